@@ -1,0 +1,15 @@
+// Everything that an operator can do, declared once: name, unit, how a script's rows are interpolated, default, least, most, meaning.
+// hold = a row's value stays until the action's next row; linear = straight line from row to row.
+// clang-format off
+CATHLAB_ACTION(device,                 "1",     hold,   0.0,    0.0,   1.0, "the device that advance and rotate move: 0 or 'wire', 1 or 'catheter'")
+CATHLAB_ACTION(advance,                "mm/s",  hold,   0.0, -100.0, 100.0, "speed at which the selected device is pushed into the sheath; negative = withdrawn")
+CATHLAB_ACTION(rotate,                 "deg/s", hold,   0.0, -360.0, 360.0, "speed at which the selected device is turned at the sheath, right-handed about its direction")
+CATHLAB_ACTION(proximal_bend,          "deg",   linear, 0.0,    0.0,  60.0, "bend wanted of the catheter's proximal segment")
+CATHLAB_ACTION(proximal_direction,     "deg",   linear, 0.0, -720.0, 720.0, "direction of that bend about the catheter's axis")
+CATHLAB_ACTION(distal_bend,            "deg",   linear, 0.0,    0.0, 140.0, "bend wanted of the catheter's distal segment")
+CATHLAB_ACTION(distal_direction,       "deg",   linear, 0.0, -720.0, 720.0, "direction of that bend about the catheter's axis")
+CATHLAB_ACTION(fluoroscopy,            "1",     hold,   0.0,    0.0,   1.0, "1 while the fluoroscopy pedal is down")
+CATHLAB_ACTION(primary_angle,          "deg",   linear, 0.0, -180.0, 180.0, "C-arm, positive = LAO (DICOM positioner primary angle)")
+CATHLAB_ACTION(secondary_angle,        "deg",   linear, 0.0,  -90.0,  90.0, "C-arm, positive = cranial (DICOM positioner secondary angle)")
+CATHLAB_ACTION(contrast,               "mL/s",  hold,   0.0,    0.0,  30.0, "flow of contrast medium from the selected device's tip")
+// clang-format on

@@ -1,0 +1,177 @@
+#include "core/deterministic_math.h"
+
+#include <cmath>
+#include <limits>
+
+namespace cathlab::det {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+// pi/2 in three parts with trailing zeros, so that k * part is exact for |k| < 2^20 (Cody and Waite 1980, ch. 8).
+constexpr double half_pi_1 = 1.5707963267341256e+00;
+constexpr double half_pi_2 = 6.0771005063039660e-11;
+constexpr double half_pi_3 = 2.0222662487959506e-21;
+
+// Taylor series on |r| <= pi/4: the first term left out is below 1e-19.
+double sin_series(double r) {
+    const double r2 = r * r;
+    double sum = 0.0;
+    for (int n = 17; n >= 3; n -= 2) sum = (1.0 + sum) * (-r2 / static_cast<double>(n * (n - 1)));
+    return r + r * sum;
+}
+
+double cos_series(double r) {
+    const double r2 = r * r;
+    double sum = 0.0;
+    for (int n = 18; n >= 2; n -= 2) sum = (1.0 + sum) * (-r2 / static_cast<double>(n * (n - 1)));
+    return 1.0 + sum;
+}
+
+struct Reduced {
+    double r;
+    int quadrant;
+};
+
+Reduced reduce(double x) {
+    const double k = std::floor(x * (2.0 / pi) + 0.5);
+    const double r = ((x - k * half_pi_1) - k * half_pi_2) - k * half_pi_3;
+    const double quadrant = k - 4.0 * std::floor(k / 4.0);
+    return {r, static_cast<int>(quadrant)};
+}
+
+}  // namespace
+
+double sin(double x) {
+    if (!std::isfinite(x) || std::fabs(x) > 1e9) return nan;
+    const Reduced a = reduce(x);
+    switch (a.quadrant) {
+        case 0: return sin_series(a.r);
+        case 1: return cos_series(a.r);
+        case 2: return -sin_series(a.r);
+        default: return -cos_series(a.r);
+    }
+}
+
+double cos(double x) {
+    if (!std::isfinite(x) || std::fabs(x) > 1e9) return nan;
+    const Reduced a = reduce(x);
+    switch (a.quadrant) {
+        case 0: return cos_series(a.r);
+        case 1: return -sin_series(a.r);
+        case 2: return -cos_series(a.r);
+        default: return sin_series(a.r);
+    }
+}
+
+double tan(double x) { return sin(x) / cos(x); }
+
+double exp(double x) {
+    if (std::isnan(x)) return nan;
+    if (x > 709.7) return inf;
+    if (x < -745.0) return 0.0;
+    constexpr double ln2_high = 6.93147180369123816490e-01;  // low 32 bits zero
+    constexpr double ln2_low = 1.90821492927058770002e-10;
+    const double k = std::floor(x / 0.693147180559945309417 + 0.5);
+    const double r = (x - k * ln2_high) - k * ln2_low;
+    double sum = 1.0;
+    for (int n = 14; n >= 1; --n) sum = 1.0 + sum * r / static_cast<double>(n);
+    return std::ldexp(sum, static_cast<int>(k));
+}
+
+double log(double x) {
+    if (std::isnan(x) || x < 0.0) return nan;
+    if (x == 0.0) return -inf;
+    if (x == inf) return inf;
+    int exponent = 0;
+    double m = std::frexp(x, &exponent);  // m in [0.5, 1)
+    if (m < 0.70710678118654752440) {
+        m *= 2.0;
+        --exponent;
+    }
+    const double s = (m - 1.0) / (m + 1.0);
+    const double s2 = s * s;
+    double sum = 0.0;
+    for (int n = 23; n >= 3; n -= 2) sum = (sum + 1.0 / static_cast<double>(n)) * s2;
+    const double k = static_cast<double>(exponent);
+    return k * 6.93147180369123816490e-01 + (2.0 * s + (2.0 * s * sum + k * 1.90821492927058770002e-10));
+}
+
+double pow(double x, double y) {
+    if (x == 0.0 && y > 0.0) return 0.0;
+    return exp(y * log(x));
+}
+
+double atan(double x) {
+    if (std::isnan(x)) return nan;
+    const double a = std::fabs(x);
+    if (a > 1.0) {
+        const double rest = pi / 2.0 - atan(1.0 / a);
+        return x < 0.0 ? -rest : rest;
+    }
+    // atan x = 2 atan(x / (1 + sqrt(1 + x^2))), twice: the series then runs on |t| <= tan(pi/16).
+    double t = x / (1.0 + std::sqrt(1.0 + x * x));
+    t = t / (1.0 + std::sqrt(1.0 + t * t));
+    const double t2 = t * t;
+    double sum = 0.0;
+    for (int n = 25; n >= 3; n -= 2) sum = -(sum + 1.0 / static_cast<double>(n)) * t2;
+    return 4.0 * (t + t * sum);
+}
+
+double atan2(double y, double x) {
+    if (std::isnan(x) || std::isnan(y)) return nan;
+    if (x == 0.0 && y == 0.0) return 0.0;
+    if (std::fabs(x) >= std::fabs(y)) {
+        const double a = atan(y / x);
+        if (x > 0.0) return a;
+        return y >= 0.0 ? a + pi : a - pi;
+    }
+    const double a = atan(x / y);
+    return y > 0.0 ? pi / 2.0 - a : -pi / 2.0 - a;
+}
+
+double asin(double x) {
+    const double c = x > 1.0 ? 1.0 : (x < -1.0 ? -1.0 : x);
+    return atan2(c, std::sqrt((1.0 - c) * (1.0 + c)));
+}
+
+double acos(double x) {
+    const double c = x > 1.0 ? 1.0 : (x < -1.0 ? -1.0 : x);
+    return atan2(std::sqrt((1.0 - c) * (1.0 + c)), c);
+}
+
+Quat rotation_from_vector(const Vec3& v) {
+    const double angle = std::sqrt(v.squaredNorm());
+    if (angle < 1e-8) {  // sin(a/2)/a = 1/2 to the last bit here
+        Quat q(1.0, 0.5 * v.x(), 0.5 * v.y(), 0.5 * v.z());
+        q.normalize();
+        return q;
+    }
+    const double s = sin(0.5 * angle) / angle;
+    return {cos(0.5 * angle), s * v.x(), s * v.y(), s * v.z()};
+}
+
+Vec3 vector_from_rotation(const Quat& q) {
+    const Vec3 v = q.w() < 0.0 ? Vec3(-q.vec()) : Vec3(q.vec());
+    const double w = std::fabs(q.w());
+    const double n = std::sqrt(v.squaredNorm());
+    if (n < 1e-9) return 2.0 * v;
+    return (2.0 * atan2(n, w) / n) * v;
+}
+
+Quat rotation_between(const Vec3& from, const Vec3& to) {
+    const double w = 1.0 + from.dot(to);
+    if (w < 1e-12) {
+        Vec3 axis = std::fabs(from.x()) < 0.9 ? from.cross(Vec3::UnitX()) : from.cross(Vec3::UnitY());
+        axis.normalize();
+        return {0.0, axis.x(), axis.y(), axis.z()};
+    }
+    const Vec3 c = from.cross(to);
+    Quat q(w, c.x(), c.y(), c.z());
+    q.normalize();
+    return q;
+}
+
+}  // namespace cathlab::det

@@ -1,0 +1,26 @@
+// Parallel loops whose result cannot depend on the number of threads: each body writes only its own range.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace cathlab {
+
+/// A pool of workers for one world.  threads = 1 runs everything in the caller.  Copies share the pool.
+class Workers {
+public:
+    explicit Workers(int threads = 1);
+    int threads() const;
+
+    /// Calls body(begin, end) on disjoint ranges that cover [0, count); ranges hold at least `grain` items.
+    /// body must write only what belongs to its range (gather, not scatter).  Exceptions pass through to the caller.
+    void for_ranges(std::size_t count, std::size_t grain,
+                    const std::function<void(std::size_t begin, std::size_t end)>& body) const;
+
+private:
+    struct Pool;
+    std::shared_ptr<Pool> pool_;  // null for one thread
+};
+
+}  // namespace cathlab
