@@ -15,10 +15,10 @@ namespace cathlab {
 
 /// A named part of the vessel tree.  Order of AnatomyModel::regions = the region indices everywhere.
 struct Region {
-    std::string name;                   ///< "ascending_aorta", "left_coronary", ...
+    std::string name;  ///< "ascending_aorta", "left_coronary", ...
     double wall_thickness_mm = 1.0;
-    double force_limit_n = 0.8;         ///< largest force allowed there (force bar = 1)
-    double particle_spacing_mm = 2.1;   ///< wanted distance between wall particles
+    double force_limit_n = 0.8;        ///< largest force allowed there (force bar = 1)
+    double particle_spacing_mm = 2.1;  ///< wanted distance between wall particles
 };
 
 /// A place where a device enters.  pose.position lies on the centre-line inside the closed end of the vessel,
@@ -70,13 +70,13 @@ struct AnatomyModel {
     std::string name;
     std::uint64_t content_hash = 0;  ///< of everything it was built from and of the builder's version
 
-    TriMesh fine;                    ///< closed lumen surface, edges well under the particle spacing: the wall is sampled on it
-    std::vector<Index> fine_region;  ///< one a vertex of fine
-    std::vector<double> fine_radius; ///< radius of the lumen near each vertex of fine, mm
+    TriMesh fine;  ///< closed lumen surface, edges well under the particle spacing: the wall is sampled on it
+    std::vector<Index> fine_region;   ///< one a vertex of fine
+    std::vector<double> fine_radius;  ///< radius of the lumen near each vertex of fine, mm
 
-    TriMesh lumen;                    ///< closed, decimated: contact and X-ray surface; at least ten edges round every lumen
-    std::vector<Index> lumen_region;  ///< one a vertex of lumen
-    std::vector<double> lumen_radius; ///< radius of the lumen near each vertex, mm
+    TriMesh lumen;  ///< closed, decimated: contact and X-ray surface; at least ten edges round every lumen
+    std::vector<Index> lumen_region;   ///< one a vertex of lumen
+    std::vector<double> lumen_radius;  ///< radius of the lumen near each vertex, mm
 
     CentrelineGraph centreline;
     std::vector<Region> regions;

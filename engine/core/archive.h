@@ -1,4 +1,5 @@
-// One `visit(Archive&, XState&)` a state serves hashing, logging and printing: the archive sees each field once, by name.
+// One `visit(Archive&, XState&)` a state serves hashing, logging and printing: the archive sees each field once, by
+// name.
 #pragma once
 
 #include <cstddef>

@@ -65,7 +65,9 @@ std::vector<Index> CentrelineGraph::path(Index from, Index to) const {
 double CentrelineGraph::length(const std::vector<Index>& path) const {
     double sum = 0.0;
     for (std::size_t i = 1; i < path.size(); ++i)
-        sum += std::sqrt((nodes[static_cast<std::size_t>(path[i])].position - nodes[static_cast<std::size_t>(path[i - 1])].position).squaredNorm());
+        sum += std::sqrt(
+            (nodes[static_cast<std::size_t>(path[i])].position - nodes[static_cast<std::size_t>(path[i - 1])].position)
+                .squaredNorm());
     return sum;
 }
 

@@ -16,7 +16,7 @@ struct ChannelInfo {
     std::string_view name;
     std::string_view unit;
     std::string_view doc;
-    double Channels::* value;
+    double Channels::*value;
 };
 
 /// In the order of channels.inl, which is the order of the columns of trace.csv.

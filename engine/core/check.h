@@ -8,8 +8,8 @@ namespace cathlab::detail {
 }
 
 /// Always on: throws std::logic_error with the condition, the place and the message.
-#define CATHLAB_CHECK(condition, message)                                                  \
-    do {                                                                                   \
+#define CATHLAB_CHECK(condition, message)                                                           \
+    do {                                                                                            \
         if (!(condition)) ::cathlab::detail::check_failed(#condition, __FILE__, __LINE__, message); \
     } while (false)
 

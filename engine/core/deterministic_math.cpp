@@ -66,7 +66,9 @@ double cos(double x) {
     }
 }
 
-double tan(double x) { return sin(x) / cos(x); }
+double tan(double x) {
+    return sin(x) / cos(x);
+}
 
 double exp(double x) {
     if (std::isnan(x)) return nan;

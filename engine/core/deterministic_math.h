@@ -1,6 +1,7 @@
 // sin, cos, exp and their kin from +, -, *, / and sqrt alone.  The C library picks another variant on another processor
-// (fused multiply-add or not), and the last bit of such a result would reach a state hash; these give the same bits anywhere.
-// Accuracy: 2 ulp for |x| < 1e5.  Arguments that are not finite give NaN (exp: +inf gives +inf, -inf gives 0).
+// (fused multiply-add or not), and the last bit of such a result would reach a state hash; these give the same bits
+// anywhere. Accuracy: 2 ulp for |x| < 1e5.  Arguments that are not finite give NaN (exp: +inf gives +inf, -inf gives
+// 0).
 #pragma once
 
 #include "core/types.h"
@@ -11,11 +12,11 @@ double sin(double x);
 double cos(double x);
 double tan(double x);
 double exp(double x);
-double log(double x);              ///< natural logarithm; x <= 0 gives NaN (0 gives -inf)
-double pow(double x, double y);    ///< exp(y log x), x > 0; pow(0, y > 0) = 0
+double log(double x);            ///< natural logarithm; x <= 0 gives NaN (0 gives -inf)
+double pow(double x, double y);  ///< exp(y log x), x > 0; pow(0, y > 0) = 0
 double atan(double x);
 double atan2(double y, double x);
-double acos(double x);             ///< x is clamped to [-1, 1]
+double acos(double x);  ///< x is clamped to [-1, 1]
 double asin(double x);
 
 /// The rotation by |v| radians about v; exact for v = 0.

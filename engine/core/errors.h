@@ -29,7 +29,8 @@ private:
     bool wrong_use_ = false;
 };
 
-/// The known name with the smallest edit distance to `found`, or "" when none is near (distance above half its length, or 3).
+/// The known name with the smallest edit distance to `found`, or "" when none is near (distance above half its length,
+/// or 3).
 std::string nearest_name(const std::string& found, const std::vector<std::string>& known);
 
 /// "; did you mean 'x'?" or "" for appending to a sentence.

@@ -30,7 +30,9 @@ void Hash64::bytes(const void* data, std::size_t size) {
     }
 }
 
-void Hash64::text(std::string_view value) { bytes(value.data(), value.size()); }
+void Hash64::text(std::string_view value) {
+    bytes(value.data(), value.size());
+}
 
 std::uint64_t Hash64::value() const {
     std::uint64_t z = state_;

@@ -27,7 +27,8 @@ std::string hash_text(std::uint64_t hash);
 /// The hash of a file's bytes; throws UserError where it cannot be read.
 std::uint64_t hash_file(const std::string& path);
 
-/// Visits a state and hashes every field's bit pattern; names and array sizes go in too.  -0 and +0 differ, NaN is itself.
+/// Visits a state and hashes every field's bit pattern; names and array sizes go in too.  -0 and +0 differ, NaN is
+/// itself.
 class HashArchive final : public Archive {
 public:
     std::uint64_t value() const { return hash_.value(); }

@@ -1,4 +1,5 @@
-// What the operator does during one step.  The manifest is actions.inl; a script, a gamepad and a program fill the same struct.
+// What the operator does during one step.  The manifest is actions.inl; a script, a gamepad and a program fill the same
+// struct.
 #pragma once
 
 #include <span>
@@ -22,7 +23,7 @@ struct ActionInfo {
     double minimum;
     double maximum;
     std::string_view doc;
-    double Input::* value;
+    double Input::*value;
 };
 
 /// In the order of actions.inl.

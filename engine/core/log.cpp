@@ -27,13 +27,22 @@ spdlog::logger& logger() {
 void set_level(const std::string& level) {
     const std::vector<std::string> known{"trace", "debug", "info", "warn", "error", "off"};
     if (std::find(known.begin(), known.end(), level) == known.end())
-        throw UserError("--log-level '" + level + "' is not one of " + comma_list(known) + did_you_mean(level, known), true);
+        throw UserError("--log-level '" + level + "' is not one of " + comma_list(known) + did_you_mean(level, known),
+                        true);
     logger().set_level(spdlog::level::from_str(level));
 }
 
-void debug(const std::string& message) { logger().debug(message); }
-void info(const std::string& message) { logger().info(message); }
-void warn(const std::string& message) { logger().warn(message); }
-void error(const std::string& message) { logger().error(message); }
+void debug(const std::string& message) {
+    logger().debug(message);
+}
+void info(const std::string& message) {
+    logger().info(message);
+}
+void warn(const std::string& message) {
+    logger().warn(message);
+}
+void error(const std::string& message) {
+    logger().error(message);
+}
 
 }  // namespace cathlab::log

@@ -5,7 +5,8 @@
 
 namespace cathlab::log {
 
-/// level: "trace", "debug", "info", "warn", "error" or "off"; throws UserError with the list otherwise.  Output goes to stderr.
+/// level: "trace", "debug", "info", "warn", "error" or "off"; throws UserError with the list otherwise.  Output goes to
+/// stderr.
 void set_level(const std::string& level);
 void debug(const std::string& message);
 void info(const std::string& message);

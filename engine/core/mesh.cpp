@@ -22,9 +22,8 @@ MeshFaults find_faults(const TriMesh& mesh) {
             halves.push_back({(std::min(a, b) << 32U) | std::max(a, b), a < b});
         }
     }
-    std::sort(halves.begin(), halves.end(), [](const Half& a, const Half& b) {
-        return a.key != b.key ? a.key < b.key : a.forward < b.forward;
-    });
+    std::sort(halves.begin(), halves.end(),
+              [](const Half& a, const Half& b) { return a.key != b.key ? a.key < b.key : a.forward < b.forward; });
     bool first = true;
     for (std::size_t i = 0; i < halves.size();) {
         std::size_t j = i;
@@ -47,12 +46,15 @@ MeshFaults find_faults(const TriMesh& mesh) {
 }
 
 namespace {
-const Vec3& corner(const TriMesh& mesh, const Triangle& t, int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; }
+const Vec3& corner(const TriMesh& mesh, const Triangle& t, int k) {
+    return mesh.vertices[static_cast<std::size_t>(t[k])];
+}
 }  // namespace
 
 double signed_volume(const TriMesh& mesh) {
     double sum = 0.0;
-    for (const Triangle& t : mesh.triangles) sum += corner(mesh, t, 0).dot(corner(mesh, t, 1).cross(corner(mesh, t, 2)));
+    for (const Triangle& t : mesh.triangles)
+        sum += corner(mesh, t, 0).dot(corner(mesh, t, 1).cross(corner(mesh, t, 2)));
     return sum / 6.0;
 }
 

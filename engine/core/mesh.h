@@ -8,8 +8,8 @@
 namespace cathlab {
 
 struct TriMesh {
-    std::vector<Vec3> vertices;        ///< (n) mm
-    std::vector<Triangle> triangles;   ///< (m) counter-clockwise seen from outside
+    std::vector<Vec3> vertices;       ///< (n) mm
+    std::vector<Triangle> triangles;  ///< (m) counter-clockwise seen from outside
 
     bool empty() const { return triangles.empty(); }
 };

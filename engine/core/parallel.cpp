@@ -15,7 +15,9 @@ struct Workers::Pool {
 
 Workers::Workers(int threads) : pool_(threads > 1 ? std::make_shared<Pool>(threads) : nullptr) {}
 
-int Workers::threads() const { return pool_ ? pool_->arena.max_concurrency() : 1; }
+int Workers::threads() const {
+    return pool_ ? pool_->arena.max_concurrency() : 1;
+}
 
 void Workers::for_ranges(std::size_t count, std::size_t grain,
                          const std::function<void(std::size_t, std::size_t)>& body) const {
@@ -24,7 +26,8 @@ void Workers::for_ranges(std::size_t count, std::size_t grain,
         body(0, count);
         return;
     }
-    // isolate: a worker that waits here must not pick up another world's outer task, which could deadlock on locks above us.
+    // isolate: a worker that waits here must not pick up another world's outer task, which could deadlock on locks
+    // above us.
     pool_->arena.execute([&] {
         tbb::this_task_arena::isolate([&] {
             tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, std::max<std::size_t>(1, grain)),

@@ -15,7 +15,9 @@ constexpr std::uint64_t mix(std::uint64_t z) {
     return z ^ (z >> 31U);
 }
 
-double to_unit(std::uint64_t bits) { return static_cast<double>(bits >> 11U) * 0x1.0p-53; }
+double to_unit(std::uint64_t bits) {
+    return static_cast<double>(bits >> 11U) * 0x1.0p-53;
+}
 
 }  // namespace
 

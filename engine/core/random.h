@@ -7,7 +7,15 @@
 namespace cathlab {
 
 /// Names of the streams, so that no two users of the same seed draw the same numbers.
-enum class RandomStream : std::uint64_t { quantum_noise = 1, electronic_noise = 2, sampling = 3, effect = 4, operator_ = 5, optimiser = 6, test = 7 };
+enum class RandomStream : std::uint64_t {
+    quantum_noise = 1,
+    electronic_noise = 2,
+    sampling = 3,
+    effect = 4,
+    operator_ = 5,
+    optimiser = 6,
+    test = 7
+};
 
 /// 64 random bits.
 std::uint64_t random_bits(std::uint64_t seed, RandomStream stream, std::uint64_t step, std::uint64_t index);

@@ -1,5 +1,5 @@
-// The world: named entities and one table a component type.  Models are const after load and may be shared between worlds;
-// states belong to one world and change only in step().
+// The world: named entities and one table a component type.  Models are const after load and may be shared between
+// worlds; states belong to one world and change only in step().
 #pragma once
 
 #include <concepts>
@@ -23,7 +23,9 @@ enum class Entity : std::int32_t { none = -1 };
 
 /// A component whose fields can be visited goes into the state hash; any other (a model, a scratch array) does not.
 template <class T>
-concept Visitable = requires(Archive& archive, T& t) { visit(archive, t); };
+concept Visitable = requires(Archive& archive, T& t) {
+    visit(archive, t);
+};
 
 class World {
 public:

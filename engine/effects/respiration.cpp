@@ -1,0 +1,65 @@
+// Breathing moves what the vessels hang on.  Displacement of a support at height z:
+//     u(z, t) = a w(z) (1 - cos^4(pi t / T)) d,
+// the asymmetric breathing curve of Lujan et al. (1999), here with n = 2 and rest at end-expiration; w falls from 1 at
+// and above the diaphragm's height to 0 at the pelvis, because the iliac arteries are held by bone.
+#include <cmath>
+
+#include "core/deterministic_math.h"
+#include "core/units.h"
+#include "effects/effect.h"
+
+namespace cathlab {
+namespace {
+
+class Respiration final : public Effect {
+public:
+    explicit Respiration(std::span<const double> p)
+        : amplitude_(p[0]), period_(p[1]), phase_(p[2]), direction_(p[3], p[4], p[5]), upper_(p[6]), lower_(p[7]) {
+        const double n = std::sqrt(direction_.squaredNorm());
+        direction_ = n > 0.0 ? Vec3(direction_ / n) : Vec3(0.0, 0.0, -1.0);
+    }
+
+    void drive(const EffectContext& context, Drive& drive) override {
+        const double c = det::cos(units::pi * ((context.time_s + context.dt) / period_ + phase_));
+        const double breath = amplitude_ * (1.0 - c * c * c * c);
+        for (std::size_t i = 0; i < drive.support_displacement.size(); ++i) {
+            if (!context.wall_fixed[i]) continue;
+            const double z = context.wall_rest[i].z();
+            double w = upper_ > lower_ ? (z - lower_) / (upper_ - lower_) : 1.0;
+            w = w < 0.0 ? 0.0 : (w > 1.0 ? 1.0 : w);
+            drive.support_displacement[i] += breath * w * w * (3.0 - 2.0 * w) * direction_;
+        }
+    }
+
+private:
+    double amplitude_, period_, phase_;
+    Vec3 direction_;
+    double upper_, lower_;
+};
+
+}  // namespace
+
+EffectInfo respiration_effect() {
+    return {
+        .name = "respiration",
+        .doc = "breathing moves the supports of the vessels, most above the diaphragm and not at all in the pelvis",
+        .source = "lujan1999",
+        .hooks = hook_drive,
+        .for_tests = false,
+        .applies_to = {"catheter-tip", "heart-motion"},
+        .parameters =
+            {
+                {"amplitude_mm", "mm", 6.0, 0.0, 40.0, "displacement at end-inspiration above the diaphragm"},
+                {"period_s", "s", 4.0, 0.5, 30.0, "one breath"},
+                {"phase", "1", 0.0, 0.0, 1.0, "phase of the breath at time 0; 0 = end-expiration"},
+                {"direction_x", "1", 0.0, -1.0, 1.0, "direction at inspiration, patient's left"},
+                {"direction_y", "1", -0.3, -1.0, 1.0, "direction at inspiration, posterior"},
+                {"direction_z", "1", -0.95, -1.0, 1.0, "direction at inspiration, cranial"},
+                {"upper_z_mm", "mm", -100.0, -2000.0, 2000.0, "height from which on the supports move in full"},
+                {"lower_z_mm", "mm", -300.0, -2000.0, 2000.0, "height below which they stand still"},
+            },
+        .make = [](std::span<const double> p) -> std::unique_ptr<Effect> { return std::make_unique<Respiration>(p); },
+    };
+}
+
+}  // namespace cathlab
