@@ -1,0 +1,220 @@
+#include "imaging/video_writer.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <thread>
+
+#include "core/check.h"
+#include "core/errors.h"
+#include "core/log.h"
+
+namespace cathlab {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t queue_limit = 8;                // frames that may wait for the encoder
+constexpr std::uintmax_t least_free_bytes = 4 << 20;  // a folder with less than this is full for a film
+
+std::string part_name(const fs::path& path) {
+    fs::path part = path;
+    part.replace_extension();
+    part += ".part";
+    part += path.extension();
+    return part.string();
+}
+
+void require_writable(const std::string& path, const std::string& part) {
+    const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+    if (!fs::is_directory(folder)) throw UserError("cannot write video '" + path + "': no folder " + folder.string());
+    std::error_code error;
+    const fs::space_info space = fs::space(folder, error);
+    if (!error && space.available < least_free_bytes) {
+        throw UserError("cannot write video '" + path + "': the disk is full");
+    }
+    const bool writable = static_cast<bool>(std::ofstream(part, std::ios::binary));
+    fs::remove(part, error);
+    if (!writable) throw UserError("cannot write video '" + path + "': " + folder.string() + " is not writable");
+}
+
+}  // namespace
+
+struct VideoWriter::Impl {
+    std::string path, part, codec;
+    int width = 0, height = 0;
+    std::size_t added = 0;
+    bool closed = false;
+    cv::VideoWriter writer;
+
+    std::thread encoder;
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::deque<cv::Mat> queue;
+    bool ending = false;
+    std::string failure;  // what stopped the encoder
+
+    bool open(const char* fourcc, double fps) {
+        codec = fourcc;
+        const int code = cv::VideoWriter::fourcc(fourcc[0], fourcc[1], fourcc[2], fourcc[3]);
+        try {
+            return writer.open(part, cv::CAP_FFMPEG, code, fps, cv::Size(width, height), true);
+        } catch (const cv::Exception&) {
+            return false;
+        }
+    }
+
+    void encode() {
+        for (;;) {
+            cv::Mat frame;
+            {
+                std::unique_lock lock(mutex);
+                changed.wait(lock, [&] { return ending || !queue.empty(); });
+                if (queue.empty()) return;
+                frame = std::move(queue.front());
+                queue.pop_front();
+            }
+            changed.notify_all();
+            try {
+                writer.write(frame);
+            } catch (const std::exception& error) {
+                const std::scoped_lock lock(mutex);
+                failure = error.what();
+                queue.clear();
+                changed.notify_all();
+                return;
+            }
+        }
+    }
+
+    void stop_encoder() {
+        {
+            const std::scoped_lock lock(mutex);
+            ending = true;
+        }
+        changed.notify_all();
+        if (encoder.joinable()) encoder.join();
+        writer.release();
+    }
+
+    void drop_part() const {
+        std::error_code ignored;
+        fs::remove(part, ignored);
+    }
+};
+
+VideoWriter::VideoWriter(const std::string& path, int width, int height, double fps) : impl_(std::make_unique<Impl>()) {
+    const std::string extension = fs::path(path).extension().string();
+    if (extension != ".mp4" && extension != ".avi") {
+        throw UserError("cannot write video '" + path + "': its name must end in .mp4 (H.264) or .avi (lossless FFV1)");
+    }
+    if (width < 16 || height < 16 || width % 2 != 0 || height % 2 != 0) {
+        throw UserError("a video of " + std::to_string(width) + "x" + std::to_string(height) +
+                        " cannot be written: width and height must be even numbers of at least 16");
+    }
+    if (!(fps > 0.0 && fps <= 240.0)) {
+        throw UserError("a video with " + std::to_string(fps) +
+                        " frames per second cannot be written: allowed is (0, 240]");
+    }
+    impl_->path = path;
+    impl_->part = part_name(path);
+    impl_->width = width;
+    impl_->height = height;
+    require_writable(path, impl_->part);
+    if (extension == ".avi") {
+        if (!impl_->open("FFV1", fps)) throw UserError("cannot write video '" + path + "': no FFV1 encoder");
+    } else if (!impl_->open("avc1", fps)) {
+        log::warn("no H.264 encoder here; '" + path + "' is written as MPEG-4 part 2 (mp4v)");
+        if (!impl_->open("mp4v", fps)) throw UserError("cannot write video '" + path + "': no H.264 or MPEG-4 encoder");
+    }
+    impl_->encoder = std::thread([impl = impl_.get()] { impl->encode(); });
+}
+
+VideoWriter::~VideoWriter() {
+    if (impl_->closed) return;
+    impl_->stop_encoder();
+    impl_->drop_part();
+}
+
+void VideoWriter::add(const Image8& frame) {
+    CATHLAB_CHECK(!impl_->closed, "the film is closed");
+    CATHLAB_CHECK(frame.width == impl_->width && frame.height == impl_->height,
+                  "a frame's size differs from the film's");
+    const cv::Mat rgb(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.rgb.data()));
+    cv::Mat bgr;
+    cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+    std::unique_lock lock(impl_->mutex);
+    impl_->changed.wait(lock, [&] { return impl_->queue.size() < queue_limit || !impl_->failure.empty(); });
+    if (!impl_->failure.empty()) throw UserError("video '" + impl_->path + "' cannot go on: " + impl_->failure);
+    impl_->queue.push_back(std::move(bgr));
+    ++impl_->added;
+    lock.unlock();
+    impl_->changed.notify_all();
+}
+
+void VideoWriter::close() {
+    if (impl_->closed) return;
+    impl_->stop_encoder();
+    impl_->closed = true;
+    try {
+        if (!impl_->failure.empty()) throw UserError("video '" + impl_->path + "' failed: " + impl_->failure);
+        if (impl_->added == 0) throw UserError("video '" + impl_->path + "' has no frame and was not written");
+        const VideoFacts facts = read_video_facts(impl_->part);
+        if (facts.frames != impl_->added || facts.width != impl_->width || facts.height != impl_->height) {
+            throw UserError("video '" + impl_->path + "' reads back as " + std::to_string(facts.frames) +
+                            " frames of " + std::to_string(facts.width) + "x" + std::to_string(facts.height) +
+                            ", written were " + std::to_string(impl_->added) + " of " + std::to_string(impl_->width) +
+                            "x" + std::to_string(impl_->height) + "; the disk may be full");
+        }
+        std::error_code error;
+        fs::rename(impl_->part, impl_->path, error);
+        if (error) throw UserError("cannot write video '" + impl_->path + "': " + error.message());
+    } catch (...) {
+        impl_->drop_part();
+        throw;
+    }
+}
+
+std::size_t VideoWriter::frames() const {
+    return impl_->added;
+}
+const std::string& VideoWriter::codec() const {
+    return impl_->codec;
+}
+
+VideoFacts read_video_facts(const std::string& path) {
+    cv::VideoCapture capture;
+    if (!fs::is_regular_file(path) || !capture.open(path, cv::CAP_FFMPEG)) {
+        throw UserError("cannot read video '" + path + "'");
+    }
+    VideoFacts facts;
+    facts.width = static_cast<int>(capture.get(cv::CAP_PROP_FRAME_WIDTH));
+    facts.height = static_cast<int>(capture.get(cv::CAP_PROP_FRAME_HEIGHT));
+    facts.fps = capture.get(cv::CAP_PROP_FPS);
+    while (capture.grab()) ++facts.frames;
+    return facts;
+}
+
+Image8 read_video_frame(const std::string& path, std::size_t index) {
+    cv::VideoCapture capture;
+    if (!fs::is_regular_file(path) || !capture.open(path, cv::CAP_FFMPEG)) {
+        throw UserError("cannot read video '" + path + "'");
+    }
+    cv::Mat bgr;
+    for (std::size_t i = 0; i <= index; ++i) {
+        if (!capture.grab()) throw UserError("video '" + path + "' has no frame " + std::to_string(index));
+    }
+    capture.retrieve(bgr);
+    Image8 image(bgr.cols, bgr.rows);
+    cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, image.rgb.data());
+    cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
+    return image;
+}
+
+}  // namespace cathlab

@@ -1,0 +1,53 @@
+// Frames -> a film that plays everywhere (H.264 in MP4), or one without loss (FFV1 in AVI).
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "imaging/image.h"
+
+namespace cathlab {
+
+/// Writes NAME.part.EXT and renames it to NAME.EXT in close(), so the final name never holds half a film.
+/// Encoding runs in a thread of its own behind a short queue; the file's bytes do not depend on its timing.
+/// The codec follows the name: .avi = FFV1 (lossless), .mp4 = H.264 (avc1), or MPEG-4 part 2 (mp4v) with a line in the
+/// log where the system has no H.264 encoder.
+class VideoWriter {
+public:
+    /// fps in (0, 240]; width and height even (4:2:0 halves the colour planes), at least 16.
+    /// Throws UserError on odd or tiny sizes, an unknown extension, an unwritable or full folder, a missing codec.
+    VideoWriter(const std::string& path, int width, int height, double fps);
+    /// Without close() before it: the film is given up, and its part file removed.
+    ~VideoWriter();
+    VideoWriter(const VideoWriter&) = delete;
+    VideoWriter& operator=(const VideoWriter&) = delete;
+
+    /// Appends a frame (copied).  Throws UserError where the encoder stopped; CATHLAB_CHECK on a wrong size.
+    void add(const Image8& frame);
+
+    /// Finishes what is there, reads it back, checks number and size of the frames, then gives it its final name.
+    /// Throws UserError (no frame, count or size differ, for instance on a full disk) and then leaves no file.
+    void close();
+
+    std::size_t frames() const;
+    const std::string& codec() const;  ///< "FFV1", "avc1" or "mp4v"
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// What a film holds, found by decoding all of it; throws UserError where it cannot be opened.
+struct VideoFacts {
+    std::size_t frames = 0;
+    int width = 0;
+    int height = 0;
+    double fps = 0;
+};
+VideoFacts read_video_facts(const std::string& path);
+
+/// Frame `index` of a film as a picture; throws UserError where there is none.
+Image8 read_video_frame(const std::string& path, std::size_t index);
+
+}  // namespace cathlab

@@ -1,0 +1,86 @@
+#include "imaging/video_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "core/errors.h"
+
+namespace cathlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+Image8 moving_square(int width, int height, int step) {
+    Image8 image(width, height, 40);
+    paste(image, Image8(12, 12, 220), step, height / 2);
+    return image;
+}
+
+class Video : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() /
+                  (std::string("cathlab_video_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    std::string file(const char* name) const { return (folder_ / name).string(); }
+    std::size_t files() const {
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}));
+    }
+    fs::path folder_;
+};
+
+TEST_F(Video, ReadsBackWithItsFramesAndSize) {
+    VideoWriter video(file("a.mp4"), 128, 64, 15.0);
+    for (int i = 0; i < 20; ++i) video.add(moving_square(128, 64, 2 * i));
+    EXPECT_FALSE(fs::exists(file("a.mp4")));
+    video.close();
+    const VideoFacts facts = read_video_facts(file("a.mp4"));
+    EXPECT_EQ(facts.frames, 20U);
+    EXPECT_EQ(facts.width, 128);
+    EXPECT_EQ(facts.height, 64);
+    EXPECT_NEAR(facts.fps, 15.0, 0.01);
+    EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(Video, AnAviKeepsEveryByte) {
+    const Image8 frame = moving_square(64, 32, 9);
+    VideoWriter video(file("a.avi"), 64, 32, 30.0);
+    video.add(moving_square(64, 32, 0));
+    video.add(frame);
+    video.close();
+    EXPECT_EQ(video.codec(), "FFV1");
+    EXPECT_EQ(read_video_frame(file("a.avi"), 1).rgb, frame.rgb);
+    EXPECT_THROW(read_video_frame(file("a.avi"), 2), UserError);
+}
+
+TEST_F(Video, GivenUpLeavesNothing) {
+    auto video = std::make_unique<VideoWriter>(file("a.mp4"), 64, 32, 15.0);
+    video->add(moving_square(64, 32, 0));
+    video.reset();
+    EXPECT_EQ(files(), 0U);
+}
+
+TEST_F(Video, WithoutAFrameIsAnErrorAndLeavesNothing) {
+    VideoWriter video(file("a.mp4"), 64, 32, 15.0);
+    EXPECT_THROW(video.close(), UserError);
+    EXPECT_EQ(files(), 0U);
+}
+
+TEST_F(Video, OddSizesUnknownEndingsAndMissingFoldersAreRefused) {
+    EXPECT_THROW(VideoWriter(file("a.mp4"), 127, 64, 15.0), UserError);
+    EXPECT_THROW(VideoWriter(file("a.mp4"), 128, 63, 15.0), UserError);
+    EXPECT_THROW(VideoWriter(file("a.mp4"), 0, 64, 15.0), UserError);
+    EXPECT_THROW(VideoWriter(file("a.gif"), 128, 64, 15.0), UserError);
+    EXPECT_THROW(VideoWriter(file("a.mp4"), 128, 64, 0.0), UserError);
+    EXPECT_THROW(VideoWriter(file("missing/a.mp4"), 128, 64, 15.0), UserError);
+    EXPECT_THROW(VideoWriter("/proc/a.mp4", 128, 64, 15.0), UserError);
+    EXPECT_EQ(files(), 0U);
+}
+
+}  // namespace
+}  // namespace cathlab
