@@ -20,8 +20,8 @@ public:
     }
 
     void drive(const EffectContext& context, Drive& drive) override {
-        const double c = det::cos(units::pi * ((context.time_s + context.dt) / period_ + phase_));
-        const double breath = amplitude_ * (1.0 - c * c * c * c);
+        const double s = det::sin(units::pi * ((context.time_s + context.dt) / period_ + phase_));
+        const double breath = amplitude_ * s * s * s * s;
         for (std::size_t i = 0; i < drive.support_displacement.size(); ++i) {
             if (!context.wall_fixed[i]) continue;
             const double z = context.wall_rest[i].z();
