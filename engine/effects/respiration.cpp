@@ -1,7 +1,7 @@
 // Breathing moves what the vessels hang on.  Displacement of a support at height z:
-//     u(z, t) = a w(z) (1 - cos^4(pi t / T)) d,
-// the asymmetric breathing curve of Lujan et al. (1999), here with n = 2 and rest at end-expiration; w falls from 1 at
-// and above the diaphragm's height to 0 at the pelvis, because the iliac arteries are held by bone.
+//     u(z, t) = a w(z) sin^4(pi t / T) d,
+// the asymmetric breathing curve of Lujan et al. (1999) with n = 2, which dwells at end-expiration, and time counted from
+// there; w falls from 1 at and above the diaphragm's height to 0 at the pelvis, because bone holds the iliac arteries.
 #include <cmath>
 
 #include "core/deterministic_math.h"
