@@ -184,9 +184,9 @@ std::string resolve_beside_file(const std::string& text, const std::string&, con
     return full.lexically_normal().string();
 }
 
-std::map<std::string, double> parameter_defaults(std::span<const Parameter> list) {
-    std::map<std::string, double> out;
-    for (const Parameter& p : list) out[std::string(p.key)] = p.default_value;
+std::vector<double> parameter_defaults(std::span<const Parameter> list) {
+    std::vector<double> out;
+    for (const Parameter& p : list) out.push_back(p.default_value);
     return out;
 }
 

@@ -20,7 +20,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -231,6 +230,29 @@ public:
         f.open = [member](void* o) -> void* { return &(self(o).*member); };
         return *this;
     }
+    /// A section that may be absent: the member gets a value when the file has [key].
+    template <class U>
+    Table& table(std::string key, std::optional<U> T::*member, const Table<U>& sub) {
+        FieldSpec& f = add(std::move(key), FieldKind::table, "", {}, sub.spec().doc);
+        f.sub = std::make_shared<const TableSpec>(sub.spec());
+        f.open = [member](void* o) -> void* { return &(self(o).*member).emplace(); };
+        return *this;
+    }
+    /// The fields of `part` stand in this section itself and fill the member.
+    template <class U>
+    Table& include(U T::*member, const Table<U>& part) {
+        const auto inner = [member](void* o) -> void* { return &(self(o).*member); };
+        for (FieldSpec f : part.spec().fields) {
+            if (f.store) f.store = [store = f.store, inner](void* o, const FieldValue& v) { store(inner(o), v); };
+            if (f.load) f.load = [load = f.load, member](const void* o) { return load(&(self(o).*member)); };
+            if (f.open) f.open = [open = f.open, inner](void* o) { return open(inner(o)); };
+            if (f.clear) f.clear = [clear = f.clear, inner](void* o) { clear(inner(o)); };
+            spec_.fields.push_back(std::move(f));
+        }
+        if (const auto store_place = part.spec().store_place)
+            spec_.store_place = [store_place, inner](void* o, const SourcePlace& p) { store_place(inner(o), p); };
+        return *this;
+    }
     /// A list of sections: [[key]]
     template <class U>
     Table& tables(std::string key, std::vector<U> T::*member, const Table<U>& sub, Count count = {}) {
@@ -241,13 +263,13 @@ public:
         f.clear = [member](void* o) { (self(o).*member).clear(); };
         return *this;
     }
-    /// One number field a Parameter; the map receives every key, with its default when the file is silent and
-    /// read_table is given an object whose map holds the defaults (parameter_defaults).
-    Table& parameters(std::span<const Parameter> list, std::map<std::string, double> T::*member) {
-        for (const Parameter& p : list) {
-            const std::string key(p.key);
-            FieldSpec& f = add(key, FieldKind::number, std::string(p.unit), {p.minimum, p.maximum}, std::string(p.doc));
-            f.store = [member, key](void* o, const FieldValue& v) { (self(o).*member)[key] = std::get<double>(v); };
+    /// One number field a Parameter; values in the order of the list (give the object parameter_defaults(list) first).
+    Table& parameters(std::span<const Parameter> list, std::vector<double> T::*member) {
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const Parameter& p = list[i];
+            FieldSpec& f = add(std::string(p.key), FieldKind::number, std::string(p.unit), {p.minimum, p.maximum},
+                               std::string(p.doc));
+            f.store = [member, i](void* o, const FieldValue& v) { (self(o).*member).at(i) = std::get<double>(v); };
             f.load = [value = p.default_value](const void*) -> FieldValue { return value; };
         }
         return *this;
@@ -300,6 +322,7 @@ T read_table(const TomlNode& node, const Table<T>& table, const PathResolver& re
     return object;
 }
 
-std::map<std::string, double> parameter_defaults(std::span<const Parameter> list);
+/// The default values in the order of the list.
+std::vector<double> parameter_defaults(std::span<const Parameter> list);
 
 }  // namespace cathlab
