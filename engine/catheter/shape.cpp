@@ -1,0 +1,105 @@
+#include "catheter/shape.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "core/deterministic_math.h"
+
+namespace cathlab {
+namespace {
+
+struct Piece {
+    double length, bend, direction;
+};
+
+std::vector<Piece> pieces_of(const CatheterSpec& spec, const CatheterState& state) {
+    std::vector<Piece> pieces;
+    for (std::size_t i = 0; i < spec.segments.size(); ++i) {
+        if (i > 0 && spec.link_length_mm > 0.0) pieces.push_back({spec.link_length_mm, 0.0, 0.0});
+        pieces.push_back({spec.segments[i].length_mm, state.bend_rad[i], state.direction_rad[i]});
+    }
+    if (spec.tip_length_mm > 0.0) pieces.push_back({spec.tip_length_mm, 0.0, 0.0});
+    return pieces;
+}
+
+Pose rotated_about_z(const Pose& pose, double angle) {
+    return {pose.position, pose.orientation * det::rotation_from_vector(Vec3(0.0, 0.0, angle))};
+}
+
+}  // namespace
+
+Pose along_arc(const Pose& start, double length, double bend, double direction) {
+    const double c = det::cos(direction);
+    const double s = det::sin(direction);
+    double out = 0.5 * length * bend;  // first order of (1 - cos beta) / beta
+    double on = length;
+    if (std::fabs(bend) > 1e-8) {
+        out = length * (1.0 - det::cos(bend)) / bend;
+        on = length * det::sin(bend) / bend;
+    }
+    Pose end;
+    end.position = start.to_world(Vec3(out * c, out * s, on));
+    // Rz(phi) Ry(beta) Rz(-phi) is the turn by beta about (-sin phi, cos phi, 0).
+    end.orientation = (start.orientation * det::rotation_from_vector(Vec3(-bend * s, bend * c, 0.0))).normalized();
+    return end;
+}
+
+double base_arc_mm(const CatheterSpec& spec, const CatheterState& state) {
+    return state.insertion_mm - spec.steerable_length_mm();
+}
+
+CatheterShape shape(const CatheterSpec& spec, const CatheterState& state, const Rail& rail, double spacing_mm) {
+    CATHLAB_CHECK(spacing_mm > 0.0, "spacing of the samples");
+    const double base_arc = base_arc_mm(spec, state);
+    CatheterShape out;
+    out.base = rotated_about_z(rail.at(std::max(base_arc, 0.0)), state.rotation_rad);
+
+    const auto count = static_cast<std::size_t>(state.insertion_mm / spacing_mm);  // whole spacings behind the tip
+    const double first = state.insertion_mm - static_cast<double>(count) * spacing_mm;
+    out.points.reserve(count + 2);
+    out.arc.reserve(count + 2);
+    const auto add = [&](double arc, const Vec3& p) {
+        out.arc.push_back(arc);
+        out.points.push_back(p);
+    };
+    if (first > 1e-9 || count == 0) add(0.0, rail.point(0.0));
+
+    // Along the catheter: samples at first + k spacing.
+    std::size_t k = 0;
+    const auto arc_of = [&](std::size_t i) { return first + static_cast<double>(i) * spacing_mm; };
+    for (; k <= count && arc_of(k) < base_arc; ++k) add(arc_of(k), rail.point(arc_of(k)));
+
+    Pose start = out.base;
+    double begin = base_arc;
+    for (const Piece& piece : pieces_of(spec, state)) {
+        const double end = begin + piece.length;
+        const double exposed = std::min(piece.length, end);  // what is out of the sheath
+        if (exposed > 0.0) {
+            const double curvature = piece.bend / piece.length;
+            const double from = end - exposed;
+            for (; k <= count && arc_of(k) <= end; ++k) {
+                const double length = arc_of(k) - from;
+                if (arc_of(k) > 0.0 || out.points.empty())
+                    add(arc_of(k), along_arc(start, length, curvature * length, piece.direction).position);
+            }
+            start = along_arc(start, exposed, curvature * exposed, piece.direction);
+        }
+        begin = end;
+    }
+    out.tip = start;
+    for (; k <= count && (arc_of(k) > 0.0 || out.points.empty()); ++k)
+        add(arc_of(k), out.tip.position);  // rounding of the sums
+    return out;
+}
+
+std::vector<Vec3> steering_guide(const CatheterSpec& spec, const CatheterShape& shape, double prolonged_mm) {
+    std::vector<Vec3> guide;
+    const double base = shape.arc.back() - spec.steerable_length_mm();
+    for (std::size_t i = 0; i < shape.points.size(); ++i)
+        if (shape.arc[i] >= base) guide.push_back(shape.points[i]);
+    guide.push_back(shape.tip.position + prolonged_mm * (shape.tip.orientation * Vec3::UnitZ()));
+    return guide;
+}
+
+}  // namespace cathlab
