@@ -10,31 +10,37 @@ namespace {
 
 constexpr std::size_t samples_per_span = 3;  // fixed: a count that followed the moving lengths would make the rail jump
 
-std::vector<Vec3> averaged(std::span<const Vec3> nodes, std::span<const double> radius, const RailShape& shape) {
+// One pass of the triangular kernel.  It shrinks towards both ends, so that the ends stay and the kernel keeps its
+// symmetry.
+std::vector<Vec3> averaged_once(const std::vector<Vec3>& nodes, std::span<const double> radius,
+                                const RailShape& shape) {
     std::vector<double> arc(nodes.size(), 0.0);
     for (std::size_t i = 1; i < nodes.size(); ++i)
         arc[i] = arc[i - 1] + std::sqrt((nodes[i] - nodes[i - 1]).squaredNorm());
-    std::vector<Vec3> out(nodes.begin(), nodes.end());
+    std::vector<Vec3> out = nodes;
     for (std::size_t i = 1; i + 1 < nodes.size(); ++i) {
-        // The kernel shrinks towards both ends, so that the ends stay and the kernel keeps its symmetry.
-        const double half = std::min(
-            {shape.smoothing_radii * radius[i], shape.smoothing_max_mm, arc[i] - arc.front(), arc.back() - arc[i]});
+        const double half =
+            std::min({shape.smoothing_radii * radius[i], shape.smoothing_max_mm, arc[i], arc.back() - arc[i]});
         if (half < 1e-9) continue;
         Vec3 sum = nodes[i];
         double weight = 1.0;
-        for (std::size_t j = i; j-- > 0 && arc[i] - arc[j] < half;) {
-            const double w = 1.0 - (arc[i] - arc[j]) / half;
-            sum += w * nodes[j];
-            weight += w;
-        }
-        for (std::size_t j = i + 1; j < nodes.size() && arc[j] - arc[i] < half; ++j) {
-            const double w = 1.0 - (arc[j] - arc[i]) / half;
-            sum += w * nodes[j];
-            weight += w;
-        }
-        const Vec3 shift = sum / weight - nodes[i];
-        const double limit = shape.deviation_limit * radius[i];
-        out[i] += shift / std::sqrt(1.0 + shift.squaredNorm() / std::max(limit * limit, 1e-12));
+        const auto take = [&](std::size_t j, double distance) {
+            sum += (1.0 - distance / half) * nodes[j];
+            weight += 1.0 - distance / half;
+        };
+        for (std::size_t j = i; j-- > 0 && arc[i] - arc[j] < half;) take(j, arc[i] - arc[j]);
+        for (std::size_t j = i + 1; j < nodes.size() && arc[j] - arc[i] < half; ++j) take(j, arc[j] - arc[i]);
+        out[i] = sum / weight;
+    }
+    return out;
+}
+
+std::vector<Vec3> averaged(const std::vector<Vec3>& nodes, std::span<const double> radius, const RailShape& shape) {
+    std::vector<Vec3> out = averaged_once(averaged_once(nodes, radius, shape), radius, shape);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const Vec3 shift = out[i] - nodes[i];
+        const double limit = std::max(shape.deviation_limit * radius[i], 1e-6);
+        out[i] = nodes[i] + shift / std::sqrt(1.0 + shift.squaredNorm() / (limit * limit));
     }
     return out;
 }

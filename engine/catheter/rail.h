@@ -22,17 +22,17 @@ struct Rail {
 };
 
 struct RailShape {
-    double smoothing_radii = 1.5;    ///< half-width of the averaging along the route, in local lumen radii
-    double smoothing_max_mm = 14.0;  ///< but no wider than this
-    double deviation_limit = 0.4;    ///< the averaged node stays within this fraction of the local radius, < 1
+    double smoothing_radii = 1.5;   ///< half-width of the averaging along the route, in local lumen radii
+    double smoothing_max_mm = 7.0;  ///< but no wider than this
+    double deviation_limit = 0.4;   ///< the averaged node stays within this fraction of the local radius, < 1
 };
 
 /// Farthest that a node of the route can act backwards along the rail, mm: averaging, and two spans of 4 mm of the
 /// spline.
 double rail_support_mm(const RailShape& shape);
 
-/// Averages the nodes along the route (triangular kernel, symmetric, so a straight vessel stays straight), keeps each
-/// within deviation_limit of its local radius, and runs a uniform cubic B-spline through them from the mouth.
+/// Averages the nodes along the route (triangular kernel, twice, symmetric, so a straight vessel stays straight), keeps
+/// each within deviation_limit of its local radius, and runs a uniform cubic B-spline through them from the mouth.
 /// `nodes`: current positions along the route; the first one is replaced by the mouth.  `radius`: one a node, or empty
 /// for no averaging.  The frame starts with the mouth's x axis and is carried by double reflection [wang2008]. Throws
 /// std::logic_error for fewer than two nodes.

@@ -154,7 +154,7 @@ TEST(CatheterRail, CornersAreRoundedAndTheRailStaysNearTheCentre) {
         EXPECT_LT(d, (options.deviation_limit + 0.1) * 6.0);
         nearest = std::min(nearest, (rail.points[i] - Vec3(0, 0, 60)).norm());
         const Vec3& before = rail.tangent[i > 0 ? i - 1 : 0];
-        EXPECT_LT(std::acos(std::min(1.0, rail.tangent[i].dot(before))), 15.0 * units::deg);
+        EXPECT_LT(std::acos(std::min(1.0, rail.tangent[i].dot(before))), 12.0 * units::deg);
     }
     EXPECT_GT(nearest, 0.5);  // the corner itself is cut
     EXPECT_EQ(rail.points.front(), Vec3(0, 0, 0));
