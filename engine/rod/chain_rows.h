@@ -1,0 +1,60 @@
+// The contact rows of one chain solve: which push, how they rub, and what they add to the chain's blocks.
+//
+// Normal: with d = (dx, dtheta) of the row's link and J = [n, arm x n], the row's law is
+//   lambda' = lambda - (gap + J d) / c,   lambda' >= 0 unless bilateral;
+// an active row adds J^T J / c to its link's block and J^T (lambda - gap / c) to the right-hand side.
+//
+// Friction: f' = -k s' with the slip s' = slip + P (dx + dtheta x arm) + c (f' - f), P = I - n n^T: the partner gives
+// way sideways as it does along the normal.  k = mu lambda / s_0 with s_0 = 0.5 mm/s x h is Coulomb's law made smooth
+// at rest (as in [li2020], with a lagged normal force); a row that would leave the
+// cone slides: its friction is then a constant force -mu lambda' s' / |s'| in the next pass.
+#pragma once
+
+#include <span>
+
+#include "rod/block_chain.h"
+#include "rod/chain_row.h"
+
+namespace cathlab {
+
+class ChainRows {
+public:
+    /// Takes the rows; free_links = number of links that can move.  Throws std::logic_error for an illegal row.
+    void begin(std::span<const ChainRow> rows, std::size_t free_links, double h);
+
+    /// Adds the rows of link i in their current state to its block.
+    void add_to(std::size_t link, Mat6& diagonal, Vec6& right) const;
+
+    /// Reads the solution, finds each row's forces, and changes the state of rows whose assumption failed.  Returns the
+    /// first link whose block must be built anew, or free_links when all hold.  `pass` counts from 0: the first passes
+    /// may engage and release rows, later ones only take force away, so that the loop ends.
+    std::size_t update(const std::vector<Vec6>& solution, int pass);
+
+    /// Writes multipliers and friction forces of the last update.
+    void end(std::span<ChainRow> rows) const;
+
+private:
+    enum class Rub { none, stick, slide };
+    struct Work {
+        ChainRow row;
+        Vec6 jacobian;
+        bool active = false;
+        Rub rub = Rub::none;
+        double stick = 0.0;         // k / (1 + k c)
+        double stick_load = 0.0;    // the normal force for which stick was set
+        Vec3 slide = Vec3::Zero();  // the constant force of a sliding row
+        double multiplier = 0.0;    // found
+        Vec3 tangent = Vec3::Zero();
+    };
+
+    void set_stick(Work& w, double load) const;
+    bool update_normal(Work& w, const Vec6& d, bool may_engage) const;
+    bool update_friction(Work& w, const Vec6& d, int pass) const;
+
+    std::vector<Work> work_;
+    std::vector<std::size_t> start_, order_;  // rows of link i: order_[start_[i]] .. order_[start_[i + 1] - 1]
+    std::size_t free_links_ = 0;
+    double rest_slip_ = 0.0;
+};
+
+}  // namespace cathlab

@@ -1,0 +1,202 @@
+// The Newton step of the whole chain.  Written in the bodies' own unknowns it is block tridiagonal; eliminating the
+// joints' multipliers instead gives the system of Deul et al. 2018 [deul2018], eq. 19 on: the same step by the Woodbury
+// identity, for compliances alpha = 1 / (K h^2).
+//
+// Joint between link a (nearer to the tip) and b behind it, arms r_a = -(L_a / 2) t_a, r_b = +(L_b / 2) t_b:
+//   gap    g = x_b + r_b - x_a - r_a                                  energy k/2 |g|^2, k = EA / span
+//   bend   C = 2 Im(q_a^* q_b rest^*) = 2 v, with w = the real part   energy 1/2 C^T K C, K = diag(EI, EI, GJ) / span
+//   dC = (w I - [v]x) R_a^T (dtheta_b - dtheta_a)                     in a's material frame
+// Second derivatives are left out (Gauss-Newton: the system stays positive definite) but for the string stiffness of a
+// joint under tension T, T L / 2 (I - t t^T) on a link's rotation: without it a pulled wire would be stepped
+// explicitly.
+#include <algorithm>
+
+#include "core/check.h"
+#include "core/deterministic_math.h"
+#include "rod/rod_impl.h"
+
+namespace cathlab {
+namespace {
+
+Mat3 hat(const Vec3& v) {
+    Mat3 m;
+    m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+    return m;
+}
+
+// 2 Im(to * from^*), the short way round: the rotation vector from `from` to `to` for small angles.
+Vec3 turn(const Quat& from, const Quat& to) {
+    const Quat q = to * from.conjugate();
+    return (q.w() < 0.0 ? -2.0 : 2.0) * q.vec();
+}
+
+struct JointNow {
+    Vec3 ta, tb, ra, rb, gap;
+    Vec3 v, g3;      // v in the world frame; third row of (w I - [v]x) R_a^T
+    double w = 1.0;  // real part
+    Vec3 moment;     // on a, from the bend: (w I + [v]x)^... K C in the world frame
+};
+
+JointNow joint_now(const Vec3& xa, const Quat& qa, double la, const Vec3& xb, const Quat& qb, double lb,
+                   const JointStiffness& s) {
+    JointNow j;
+    const Mat3 frame = qa.toRotationMatrix();
+    j.ta = frame.col(2);
+    j.tb = qb * Vec3::UnitZ();
+    j.ra = (-0.5 * la) * j.ta;
+    j.rb = (0.5 * lb) * j.tb;
+    j.gap = xb + j.rb - xa - j.ra;
+    Quat delta = qa.conjugate() * qb * s.rest.conjugate();
+    if (delta.w() < 0.0) delta.coeffs() = -delta.coeffs();
+    const Vec3 v = delta.vec();
+    j.w = delta.w();
+    j.v = frame * v;
+    j.g3 = frame * Vec3(v.y(), -v.x(), j.w);
+    const Vec3 u(2.0 * s.bend * v.x(), 2.0 * s.bend * v.y(), 2.0 * s.twist * v.z());
+    j.moment = frame * (j.w * u + v.cross(u));  // G^T K C
+    return j;
+}
+
+}  // namespace
+
+void Rod::Impl::assemble_joint(std::size_t i, std::size_t free) {
+    const std::size_t b = i + 1;
+    const JointStiffness& s = world.joint(i);
+    const double la = links[i].length, lb = links[b].length;
+    const JointNow j = joint_now(x[i], q[i], la, x[b], q[b], lb, s);
+    const double k = s.axial;
+    const Vec3 pull = k * j.gap;
+    // G^T K G = k_bend (I - v v^T) + (k_twist - k_bend) g3 g3^T, since w^2 + |v|^2 = 1.
+    const Mat3 bend =
+        s.bend * (Mat3::Identity() - j.v * j.v.transpose()) + (s.twist - s.bend) * j.g3 * j.g3.transpose();
+    const double string = 0.5 * std::max(0.0, tension[i]);
+    const auto rotation_block = [&](const Vec3& r, const Vec3& t, double length) {
+        Mat3 m = (k * r.squaredNorm() + string * length) * Mat3::Identity() + bend;
+        m.noalias() -= k * r * r.transpose() + (string * length) * t * t.transpose();
+        return m;
+    };
+    const auto add = [&](std::size_t link, const Vec3& r, const Vec3& t, double length) {
+        Mat6& d = system.diagonal[link];
+        d.topLeftCorner<3, 3>().diagonal().array() += k;
+        d.bottomLeftCorner<3, 3>() += k * hat(r);
+        d.bottomRightCorner<3, 3>() += rotation_block(r, t, length);
+    };
+    add(i, j.ra, j.ta, la);
+    system.right[i].head<3>() += pull;
+    system.right[i].tail<3>() += j.ra.cross(pull) + j.moment;
+    if (b >= free) return;
+    add(b, j.rb, j.tb, lb);
+    system.right[b].head<3>() -= pull;
+    system.right[b].tail<3>() -= j.rb.cross(pull) + j.moment;
+    Mat6& e = system.below[i];
+    e.topLeftCorner<3, 3>() = -k * Mat3::Identity();
+    e.topRightCorner<3, 3>() = k * hat(j.ra);
+    e.bottomLeftCorner<3, 3>() = -k * hat(j.rb);
+    e.bottomRightCorner<3, 3>() = -k * (j.ra.dot(j.rb) * Mat3::Identity() - j.ra * j.rb.transpose()) - bend;
+}
+
+void Rod::Impl::assemble(double h) {
+    const std::size_t free = free_count();
+    system.resize(free);
+    const double inertial = 1.0 / (h * h);
+    const double drag = spec.damping_per_s / h, spin_drag = spec.spin_damping_per_s / h;
+    for (std::size_t i = 0; i < free; ++i) {
+        const WireLink& link = links[i];
+        const Vec3 t = q[i] * Vec3::UnitZ();
+        const Mat3 inertia =
+            link.inertia_across * Mat3::Identity() + (link.inertia_along - link.inertia_across) * t * t.transpose();
+        Mat6& d = system.diagonal[i];
+        d.topLeftCorner<3, 3>().diagonal().array() += link.mass * (inertial + drag);
+        d.bottomRightCorner<3, 3>() += (inertial + spin_drag) * inertia;
+        system.right[i].head<3>() +=
+            link.mass * (inertial * (x_predicted[i] - x[i]) + drag * (x_start[i] - x[i])) + force[i];
+        system.right[i].tail<3>() -=
+            inertia * (inertial * turn(q_predicted[i], q[i]) + spin_drag * turn(q_start[i], q[i]));
+    }
+    for (std::size_t i = 0; i < free; ++i) assemble_joint(i, free);
+}
+
+// Moves the links and keeps the joints' forces as the linear system had them: after the move the stiff springs' own
+// lengths would show the second order of the rotations instead.
+void Rod::Impl::apply_solution(double h) {
+    const std::size_t free = free_count();
+    static_cast<void>(h);
+    for (std::size_t i = 0; i < free; ++i) {
+        const JointStiffness& s = world.joint(i);
+        const std::size_t b = i + 1;
+        const JointNow j = joint_now(x[i], q[i], links[i].length, x[b], q[b], links[b].length, s);
+        const Vec6& da = system.solution[i];
+        const Vec6 db = b < free ? system.solution[b] : Vec6::Zero().eval();
+        const Vec3 gap = j.gap + db.head<3>() + db.tail<3>().cross(j.rb) - da.head<3>() - da.tail<3>().cross(j.ra);
+        const Vec3 pull = s.axial * gap;  // on a
+        tension[i] = -pull.dot(j.ta + j.tb) * 0.5;
+        if (b < free) continue;
+        const Vec3 relative = -da.tail<3>();
+        const Vec3 moment =
+            j.moment + s.bend * (relative - j.v * j.v.dot(relative)) + (s.twist - s.bend) * j.g3 * j.g3.dot(relative);
+        sheath_reaction = pull;
+        sheath_torque = moment.dot(sheath.mouth.orientation * Vec3::UnitZ());
+    }
+    for (std::size_t i = 0; i < free; ++i) {
+        x[i] += system.solution[i].head<3>();
+        q[i] = det::rotation_from_vector(system.solution[i].tail<3>()) * q[i];
+        q[i].normalize();
+    }
+}
+
+void Rod::solve(double h, std::span<ChainRow> chain_rows) {
+    Impl& m = *impl_;
+    const std::size_t free = m.free_count();
+    for (const ChainRow& row : chain_rows)
+        CATHLAB_CHECK(row.link >= 0 && static_cast<std::size_t>(row.link) < m.count(), "a chain row names no link");
+    m.assemble(h);
+    m.rows.begin(chain_rows, free, h);
+    const std::vector<Mat6> diagonal = m.system.diagonal;
+    const std::vector<Vec6> right = m.system.right;
+    std::size_t first = 0;
+    for (int pass = 0; first < free || pass == 0; ++pass) {
+        for (std::size_t i = first; i < free; ++i) {
+            m.system.diagonal[i] = diagonal[i];
+            m.system.right[i] = right[i];
+            m.rows.add_to(i, m.system.diagonal[i], m.system.right[i]);
+        }
+        m.system.factor_and_solve(first);
+        first = m.rows.update(m.system.solution, pass);
+    }
+    m.rows.end(chain_rows);
+    m.apply_solution(h);
+}
+
+double Rod::max_stretch() const {
+    const Impl& m = *impl_;
+    double most = 0.0;
+    for (std::size_t i = 0; i < m.free_count(); ++i) {
+        const JointStiffness& s = m.world.joint(i);
+        const JointNow j =
+            joint_now(m.x[i], m.q[i], m.links[i].length, m.x[i + 1], m.q[i + 1], m.links[i + 1].length, s);
+        const double span = 0.5 * (m.links[i].length + m.links[i + 1].length);
+        most = std::max(most, j.gap.norm() / span);
+    }
+    return most;
+}
+
+double Rod::energy_uj() const {
+    const Impl& m = *impl_;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < m.free_count(); ++i) {
+        const WireLink& link = m.links[i];
+        const BodyMotion motion = m.world.motion(i);
+        const double along = motion.spin.dot(motion.pose.orientation * Vec3::UnitZ());
+        const double across2 = motion.spin.squaredNorm() - along * along;
+        sum += 0.5 * (link.mass * motion.velocity.squaredNorm() + link.inertia_along * along * along +
+                      link.inertia_across * across2);
+        const JointStiffness& s = m.world.joint(i);
+        const JointNow j = joint_now(m.x[i], m.q[i], link.length, m.x[i + 1], m.q[i + 1], m.links[i + 1].length, s);
+        const Vec3 v = m.q[i].conjugate() * j.v;
+        sum += 0.5 * s.axial * j.gap.squaredNorm() +
+               2.0 * (s.bend * (v.x() * v.x() + v.y() * v.y()) + s.twist * v.z() * v.z());
+    }
+    return sum;
+}
+
+}  // namespace cathlab

@@ -1,0 +1,45 @@
+// What Rod hides: Bullet's world between substeps, and the working arrays of one substep.  Included by this room alone.
+#pragma once
+
+#include "rod/block_chain.h"
+#include "rod/bullet_world.h"
+#include "rod/chain_rows.h"
+#include "rod/rod.h"
+
+namespace cathlab {
+
+struct Rod::Impl {
+    WireSpec spec;
+    SheathPose sheath;
+    std::vector<WireLink> links;  // the whole wire
+    BulletWorld world;            // the part of it that is in the chain
+    double insertion = 0.0;
+    double rotation = 0.0;
+
+    // One entry a link in the chain.
+    std::vector<Vec3> x, x_start, x_predicted;
+    std::vector<Quat> q, q_start, q_predicted;
+    std::vector<Vec3> force;
+    // One entry a joint of the whole wire: pull along the wire in the last solve, mN.  The joint behind link i is joint
+    // i.
+    std::vector<double> tension;
+    Vec3 sheath_reaction = Vec3::Zero();
+    double sheath_torque = 0.0;
+
+    BlockChain system;
+    ChainRows rows;
+
+    std::size_t count() const { return x.size(); }
+    std::size_t free_count() const;
+    /// Where the sheath holds link i when `insertion` mm of wire stand beyond its mouth, turned by `rotation`.
+    Pose held_pose(std::size_t i, double insertion, double rotation) const;
+    /// Links in the chain at an insertion: the free ones, and those that the sheath holds over its length.
+    std::size_t chain_length(double insertion) const;
+    void grow(std::size_t count, double insertion, double rotation);
+    void update_joints();
+    void assemble(double h);
+    void assemble_joint(std::size_t i, std::size_t free);
+    void apply_solution(double h);
+};
+
+}  // namespace cathlab

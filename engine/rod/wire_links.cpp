@@ -1,0 +1,68 @@
+#include "rod/wire_links.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/deterministic_math.h"
+#include "core/units.h"
+
+namespace cathlab {
+namespace {
+
+constexpr double least_free_share = 0.01;
+
+WireLink make_link(const WireSection& section, Index index, double start, double length) {
+    WireLink link;
+    link.start = start;
+    link.length = length;
+    link.radius = 0.5 * section.diameter_mm;
+    const double area = units::pi * link.radius * link.radius;
+    link.mass = section.density_kg_m3 * 1e-9 * area * length;
+    link.inertia_along = 0.5 * link.mass * link.radius * link.radius;
+    link.inertia_across = link.mass * (3.0 * link.radius * link.radius + length * length) / 12.0;
+    link.bend = section.bending_stiffness_n_mm2 * units::newton;
+    link.twist = section.torsion_stiffness_n_mm2 * units::newton;
+    link.axial = section.axial_stiffness_n * units::newton;
+    link.curvature = section.rest_curvature_per_mm;
+    link.section = index;
+    return link;
+}
+
+}  // namespace
+
+std::vector<WireLink> cut_into_links(const WireSpec& spec) {
+    std::vector<WireLink> links;
+    double start = 0.0;
+    for (std::size_t i = 0; i < spec.sections.size(); ++i) {
+        const WireSection& section = spec.sections[i];
+        const bool last = i + 1 == spec.sections.size();
+        const double length = last ? spec.length_mm - start : section.length_mm;
+        const double longest = section.link_length_mm > 0.0 ? section.link_length_mm : spec.link_length_mm;
+        const double count = std::max(1.0, std::ceil(length / longest - 1e-9));
+        for (double k = 0.0; k < count; k += 1.0)
+            links.push_back(make_link(section, static_cast<Index>(i), start + length * k / count, length / count));
+        start += length;
+    }
+    return links;
+}
+
+JointStiffness joint_stiffness(const WireLink& a, const WireLink& b, double insertion) {
+    const double half_a = 0.5 * a.length, half_b = 0.5 * b.length;
+    double free_a = std::clamp(insertion - a.centre(), 0.0, half_a);
+    double free_b = std::clamp(insertion - b.start, 0.0, half_b);
+    JointStiffness joint;
+    joint.span = free_a + free_b;
+    const double angle = a.curvature * free_a + b.curvature * free_b;
+    if (angle != 0.0) joint.rest = det::rotation_from_vector(Vec3(angle, 0.0, 0.0));
+    const double least = least_free_share * (half_a + half_b);
+    if (joint.span < least) {
+        free_a = least * half_a / (half_a + half_b);
+        free_b = least * half_b / (half_a + half_b);
+    }
+    joint.axial = 1.0 / (free_a / a.axial + free_b / b.axial);
+    joint.bend = 1.0 / (free_a / a.bend + free_b / b.bend);
+    joint.twist = 1.0 / (free_a / a.twist + free_b / b.twist);
+    return joint;
+}
+
+}  // namespace cathlab
