@@ -140,8 +140,6 @@ SceneSpec load_scene(const std::string& path, const std::vector<std::string>& ov
     SceneSpec scene;
     scene.path = path;
     scene.overlays = overlays;
-    for (const EffectInfo& info : effect_table())
-        scene.effects.push_back({&info, false, parameter_defaults(info.parameters)});
     read_table(document, scene_table().spec(), &scene, path_resolver(data_root));
     if (scene.name.empty()) scene.name = fs::path(path).stem().string();
     check_scene(scene);

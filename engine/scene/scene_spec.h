@@ -104,6 +104,9 @@ struct SceneEffect {
     std::vector<double> values;  ///< in the order of info->parameters
 };
 
+/// One entry an effect of the manifest, switched off, with its default values.
+std::vector<SceneEffect> all_effects_off();
+
 /// [video]
 struct SceneVideo {
     int width = 1024;
@@ -127,7 +130,7 @@ struct SceneSpec {
     SceneCArm c_arm;
     SceneContrast contrast;
     SceneForce force;
-    std::vector<SceneEffect> effects;  ///< one an entry of effect_table(), in its order
+    std::vector<SceneEffect> effects = all_effects_off();  ///< one an entry of effect_table(), in its order
     SceneVideo video;
 
     std::string path;                   ///< the scene file

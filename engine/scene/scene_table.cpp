@@ -213,6 +213,12 @@ Table<SceneSpec> make_scene_table() {
 
 }  // namespace
 
+std::vector<SceneEffect> all_effects_off() {
+    std::vector<SceneEffect> out;
+    for (const EffectInfo& info : effect_table()) out.push_back({&info, false, parameter_defaults(info.parameters)});
+    return out;
+}
+
 const Table<SceneSpec>& scene_table() {
     static const Table<SceneSpec> table = make_scene_table();
     return table;

@@ -1,0 +1,147 @@
+#include "scene/script.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "core/errors.h"
+#include "scene/toml_document.h"
+
+namespace cathlab {
+namespace {
+
+constexpr std::uint64_t most_script_bytes = 64ULL << 20U;
+constexpr double longest_script_s = 86400.0;
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+    while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
+    return text;
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+    std::vector<std::string_view> out;
+    for (;;) {
+        const auto comma = line.find(',');
+        out.push_back(trimmed(line.substr(0, comma)));
+        if (comma == std::string_view::npos) return out;
+        line.remove_prefix(comma + 1);
+    }
+}
+
+std::string shown(std::string_view cell) {
+    return std::string(cell.substr(0, 60));
+}
+
+double number_of(std::string_view cell, const SourcePlace& where, const std::string& wanted) {
+    std::string_view digits = cell;
+    if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
+        throw UserError(where, "found '" + shown(cell) + "'; " + wanted + " is wanted");
+    return value;
+}
+
+std::string number_text(double value) {
+    std::string text = std::to_string(value);
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text;
+}
+
+const ActionInfo& action_of(std::string_view cell, SourcePlace where) {
+    if (const ActionInfo* action = find_action(cell)) return *action;
+    std::vector<std::string> known;
+    for (const ActionInfo& a : action_table()) known.emplace_back(a.name);
+    where.key = "action";
+    throw UserError(where, "no action '" + shown(cell) + "'" + did_you_mean(std::string(cell), known) +
+                               " There is: " + comma_list(known));
+}
+
+double value_of(std::string_view cell, const ActionInfo& action, SourcePlace where) {
+    where.key = std::string(action.name);
+    if (action.name == "device" && cell == "wire") return 0.0;
+    if (action.name == "device" && cell == "catheter") return 1.0;
+    const std::string wanted = action.name == "device" ? "wire or catheter"
+                                                       : "a number from " + number_text(action.minimum) + " to " +
+                                                             number_text(action.maximum) +
+                                                             (action.unit == "1" ? "" : " " + std::string(action.unit));
+    const double value = number_of(cell, where, wanted);
+    const bool named = action.name != "device" || value == 0.0 || value == 1.0;
+    if (value < action.minimum || value > action.maximum || !named)
+        throw UserError(where, "found " + shown(cell) + "; " + wanted + " is wanted");
+    return value;
+}
+
+}  // namespace
+
+Script::Script() : rows_(action_table().size()) {}
+
+Script Script::load(const std::string& path) {
+    return parse(read_text_file(path, most_script_bytes), path);
+}
+
+Script Script::parse(const std::string& text, const std::string& file) {
+    Script out;
+    SourcePlace where{file, 0, ""};
+    bool header = false;
+    std::string_view rest(text);
+    if (rest.substr(0, 3) == "\xEF\xBB\xBF") rest.remove_prefix(3);
+    while (!rest.empty()) {
+        ++where.line;
+        const auto end = rest.find('\n');
+        const std::string_view line = trimmed(rest.substr(0, end));
+        rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+        if (line.empty() || line.front() == '#') continue;
+        const auto cells = cells_of(line);
+        if (!header) {
+            if (cells != std::vector<std::string_view>{"t_s", "action", "value"})
+                throw UserError(where, "found '" + shown(line) + "'; the header t_s,action,value is wanted first");
+            header = true;
+            continue;
+        }
+        if (cells.size() != 3)
+            throw UserError(where,
+                            "found " + std::to_string(cells.size()) + " cells; the three t_s,action,value are wanted");
+        const SourcePlace time_place{file, where.line, "t_s"};
+        const double t = number_of(cells[0], time_place, "a time in seconds");
+        if (t < 0.0 || t > longest_script_s)
+            throw UserError(time_place, "found " + shown(cells[0]) + "; a time from 0 to 86400 s is wanted");
+        if (t < out.end_s_)
+            throw UserError(time_place,
+                            "time runs back: " + shown(cells[0]) + " s after " + number_text(out.end_s_) + " s");
+        const ActionInfo& action = action_of(cells[1], where);
+        out.rows_[static_cast<std::size_t>(&action - action_table().data())].emplace_back(
+            t, value_of(cells[2], action, where));
+        out.end_s_ = t;
+    }
+    if (!header) throw UserError({file, 0, ""}, "is empty; the header t_s,action,value is wanted first");
+    return out;
+}
+
+Input Script::at(double t, const Input& base) const {
+    Input input = base;
+    const auto actions = action_table();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const auto& rows = rows_[i];
+        const auto next = std::upper_bound(rows.begin(), rows.end(), t,
+                                           [](double time, const auto& row) { return time < row.first; });
+        if (next == rows.begin()) continue;
+        const auto& last = *std::prev(next);
+        double value = last.second;
+        if (actions[i].interpolation == Interpolation::linear && next != rows.end())
+            value += (next->second - last.second) * (t - last.first) / (next->first - last.first);
+        input.*actions[i].value = value;
+    }
+    return input;
+}
+
+std::size_t Script::row_count() const {
+    std::size_t count = 0;
+    for (const auto& rows : rows_) count += rows.size();
+    return count;
+}
+
+}  // namespace cathlab
