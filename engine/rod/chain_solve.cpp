@@ -18,6 +18,9 @@
 namespace cathlab {
 namespace {
 
+constexpr double brake_tolerance = 1.25;  // of max_travel_mm
+constexpr int braking_passes = 12;
+
 Mat3 hat(const Vec3& v) {
     Mat3 m;
     m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
@@ -116,11 +119,25 @@ void Rod::Impl::assemble(double h) {
     for (std::size_t i = 0; i < free; ++i) assemble_joint(i, free);
 }
 
+// A link that would travel further than max_travel_mm is braked by a viscous force of its own, so that contact, which
+// looks ahead by that much, is never jumped over when a stored bend is let go.  The brake only takes energy.
+std::size_t Rod::Impl::update_brakes(double h) {
+    const std::size_t free = free_count();
+    std::size_t first = free;
+    for (std::size_t i = 0; i < free; ++i) {
+        const double travel = (x[i] + system.solution[i].head<3>() - x_start[i]).norm();
+        if (travel <= brake_tolerance * max_travel_mm()) continue;
+        const double needed = links[i].mass / (h * h) * (travel / max_travel_mm() - 1.0);
+        brake[i] = std::max(3.0 * brake[i], needed);
+        if (first == free) first = i;
+    }
+    return first;
+}
+
 // Moves the links and keeps the joints' forces as the linear system had them: after the move the stiff springs' own
 // lengths would show the second order of the rotations instead.
-void Rod::Impl::apply_solution(double h) {
+void Rod::Impl::apply_solution() {
     const std::size_t free = free_count();
-    static_cast<void>(h);
     for (std::size_t i = 0; i < free; ++i) {
         const JointStiffness& s = world.joint(i);
         const std::size_t b = i + 1;
@@ -151,20 +168,26 @@ void Rod::solve(double h, std::span<ChainRow> chain_rows) {
         CATHLAB_CHECK(row.link >= 0 && static_cast<std::size_t>(row.link) < m.count(), "a chain row names no link");
     m.assemble(h);
     m.rows.begin(chain_rows, free, h);
-    const std::vector<Mat6> diagonal = m.system.diagonal;
-    const std::vector<Vec6> right = m.system.right;
+    m.diagonal = m.system.diagonal;
+    m.right = m.system.right;
+    m.brake.assign(free, 0.0);
     std::size_t first = 0;
     for (int pass = 0; first < free || pass == 0; ++pass) {
         for (std::size_t i = first; i < free; ++i) {
-            m.system.diagonal[i] = diagonal[i];
-            m.system.right[i] = right[i];
+            m.system.diagonal[i] = m.diagonal[i];
+            m.system.right[i] = m.right[i];
             m.rows.add_to(i, m.system.diagonal[i], m.system.right[i]);
+            if (m.brake[i] > 0.0) {
+                m.system.diagonal[i].topLeftCorner<3, 3>().diagonal().array() += m.brake[i];
+                m.system.right[i].head<3>() += m.brake[i] * (m.x_start[i] - m.x[i]);
+            }
         }
         m.system.factor_and_solve(first);
         first = m.rows.update(m.system.solution, pass);
+        if (pass < braking_passes) first = std::min(first, m.update_brakes(h));
     }
     m.rows.end(chain_rows);
-    m.apply_solution(h);
+    m.apply_solution();
 }
 
 double Rod::max_stretch() const {

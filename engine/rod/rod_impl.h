@@ -28,6 +28,9 @@ struct Rod::Impl {
 
     BlockChain system;
     ChainRows rows;
+    std::vector<Mat6> diagonal;  // the blocks before rows and brakes
+    std::vector<Vec6> right;
+    std::vector<double> brake;  // mN/mm against a link's travel, see update_brakes
 
     std::size_t count() const { return x.size(); }
     std::size_t free_count() const;
@@ -39,7 +42,8 @@ struct Rod::Impl {
     void update_joints();
     void assemble(double h);
     void assemble_joint(std::size_t i, std::size_t free);
-    void apply_solution(double h);
+    std::size_t update_brakes(double h);
+    void apply_solution();
 };
 
 }  // namespace cathlab
