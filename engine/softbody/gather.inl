@@ -1,0 +1,25 @@
+// The gather of goals, included once an instruction set, as kernel.inl is: GATHER_WIDTH doubles a vector, GATHER its name.
+// The twelve numbers of a transform are added side by side, so their order of summation does not depend on the width.
+TARGET static void GATHER(const std::int32_t* start, const std::int32_t* cluster, const double* transform,
+                          const double* rest, double* goal, std::size_t begin, std::size_t end) {
+    using Vector = double __attribute__((vector_size(GATHER_WIDTH * sizeof(double))));
+    constexpr int pieces = transform_doubles / GATHER_WIDTH;
+    for (std::size_t i = begin; i < end; ++i) {
+        Vector sum[pieces] = {};
+        for (std::int32_t m = start[i]; m < start[i + 1]; ++m) {
+            const double* from = transform + static_cast<std::size_t>(cluster[m]) * transform_doubles;
+            for (int p = 0; p < pieces; ++p) {
+                Vector part;
+                __builtin_memcpy(&part, from + p * GATHER_WIDTH, sizeof part);
+                sum[p] += part;
+            }
+        }
+        double mean[transform_doubles];
+        __builtin_memcpy(mean, sum, sizeof mean);
+        const double share = 1.0 / (start[i + 1] - start[i]);
+        const double* point = rest + 3 * i;
+        for (int k = 0; k < 3; ++k)
+            goal[3 * i + static_cast<std::size_t>(k)] =
+                share * ((mean[k] * point[0] + mean[3 + k] * point[1] + mean[6 + k] * point[2]) + mean[9 + k]);
+    }
+}

@@ -1,0 +1,48 @@
+// The hot loops on raw arrays, one copy an instruction set.  One lane holds one cluster, and every operation on a lane
+// is a plain IEEE one, so the width of the machine's vectors cannot change a bit of the result.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace cathlab::kernel {
+
+inline constexpr int lanes = 8;               ///< clusters in a group
+inline constexpr int transform_doubles = 12;  ///< of a cluster: columns of R, then t; goal = R X + t
+inline constexpr int polar_rounds = 24;       ///< at most; a warm start ends after two or three
+
+/// ClusterGroups (softbody/model.h) without its vectors.
+template <class Real>
+struct Groups {
+    const std::int32_t* first_slot;
+    const std::int32_t* particle;
+    const Real* member;
+    const double* rest_centroid;
+};
+
+/// Fits groups [begin, end) to positions x (n x 3): per cluster the centroid x_c, the covariance A = sum w (x - x_c)
+/// X^T, its rotation R by iteration from the last one (rotation: groups x {w, x, y, z} x 8, in and out), and transform
+/// = (R, x_c - R X_c).
+using Fit = void (*)(const void* groups, const double* x, double* rotation, double* transform, std::size_t begin,
+                     std::size_t end);
+/// goal_i = mean over its clusters of R X_i + t for particles [begin, end).
+using Gather = void (*)(const std::int32_t* start, const std::int32_t* cluster, const double* transform,
+                        const double* rest, double* goal, std::size_t begin, std::size_t end);
+/// Rotations of eight matrices (9 x 8: a00, a01, .. a22), started from and written to quaternion (4 x 8: w, x, y, z).
+using Polar = void (*)(const double* matrix, double* quaternion);
+
+struct Set {
+    const char* name;
+    Fit fit_double;  ///< groups: Groups<double>
+    Fit fit_float;   ///< groups: Groups<float>
+    Gather gather;
+    Polar polar_double;
+    Polar polar_float;
+};
+
+/// The widest set that this processor has.
+const Set& best();
+const Set& baseline();  ///< SSE2
+const Set* avx2();      ///< null where the processor lacks it
+
+}  // namespace cathlab::kernel

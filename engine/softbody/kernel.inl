@@ -1,0 +1,156 @@
+// The body of the hot loops, included once for each number type and instruction set with
+//   REAL        float or double
+//   WIDTH       lanes of a vector, 2, 4 or 8
+//   NAMED(x)    x with the suffix of this copy
+//   TARGET      the function attribute that selects the instructions
+// Plain arrays and compiler vectors only: an inline function of a library, compiled here for a newer processor, could be the
+// copy that the linker keeps for everybody.
+
+using NAMED(V) = REAL __attribute__((vector_size(WIDTH * sizeof(REAL))));
+
+TARGET static inline void NAMED(load)(const REAL* from, NAMED(V) & to) { __builtin_memcpy(&to, from, sizeof to); }
+
+// R of the quaternion q, whatever its length: r[3 * row + column].
+TARGET static inline void NAMED(matrix_of)(const NAMED(V) * q, NAMED(V) * r) {
+    const NAMED(V) s = REAL(2) / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    const NAMED(V) sx = s * q[1], sy = s * q[2], sz = s * q[3];
+    const NAMED(V) wx = sx * q[0], wy = sy * q[0], wz = sz * q[0];
+    const NAMED(V) xx = sx * q[1], xy = sx * q[2], xz = sx * q[3], yy = sy * q[2], yz = sy * q[3], zz = sz * q[3];
+    r[0] = REAL(1) - (yy + zz);
+    r[1] = xy - wz;
+    r[2] = xz + wy;
+    r[3] = xy + wz;
+    r[4] = REAL(1) - (xx + zz);
+    r[5] = yz - wx;
+    r[6] = xz - wy;
+    r[7] = yz + wx;
+    r[8] = REAL(1) - (xx + yy);
+}
+
+// The rotation R that maximises trace(R^T A), by iteration from q.  With M = R^T A and S its symmetric part, the turn d (in
+// the frame of R) that is still missing obeys  (trace(S) 1 - S) d = axial(M)  to second order: Newton's step, taken where that
+// matrix is positive definite.  Elsewhere (far away, inverted, flat, collinear, zero) the step is the one of Mueller et al. 2016,
+// eq. 7, axial(M) over |trace|, which never fails.  A lane that has arrived is left alone, so it does not feel its neighbours.
+TARGET static inline void NAMED(polar)(const NAMED(V) * a, NAMED(V) * q) {
+    const REAL tiny = sizeof(REAL) == 8 ? REAL(1e-290) : REAL(1e-36);
+    const REAL slack = sizeof(REAL) == 8 ? REAL(1e-10) : REAL(1e-5);
+    const REAL arrived = sizeof(REAL) == 8 ? REAL(1e-14) : REAL(1e-8);  // square of the last turn; the error is its square
+    const NAMED(V) zero = {}, one = zero + REAL(1);
+    auto done = zero != zero;
+    // Covariances are scaled to a largest entry of 1, lest their cubes leave the range of a float.
+    NAMED(V) size = zero + tiny;
+    for (int k = 0; k < 9; ++k) {
+        const NAMED(V) entry = a[k] < 0 ? -a[k] : a[k];
+        size = entry > size ? entry : size;
+    }
+    NAMED(V) b[9];
+    for (int k = 0; k < 9; ++k) b[k] = a[k] / size;
+    for (int round = 0; round < polar_rounds; ++round) {
+        NAMED(V) r[9], m[9];
+        NAMED(matrix_of)(q, r);
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) m[3 * i + j] = r[i] * b[j] + r[3 + i] * b[3 + j] + r[6 + i] * b[6 + j];
+        const NAMED(V) ax = m[7] - m[5], ay = m[2] - m[6], az = m[3] - m[1];
+        const NAMED(V) trace = m[0] + m[4] + m[8];
+        const NAMED(V) bxy = REAL(-0.5) * (m[1] + m[3]), bxz = REAL(-0.5) * (m[2] + m[6]), byz = REAL(-0.5) * (m[5] + m[7]);
+        const NAMED(V) bxx = m[4] + m[8] + slack, byy = m[0] + m[8] + slack, bzz = m[0] + m[4] + slack;
+        const NAMED(V) cxx = byy * bzz - byz * byz, cxy = bxz * byz - bxy * bzz, cxz = bxy * byz - bxz * byy;
+        const NAMED(V) cyy = bxx * bzz - bxz * bxz, cyz = bxy * bxz - bxx * byz, czz = bxx * byy - bxy * bxy;
+        const NAMED(V) det = bxx * cxx + bxy * cxy + bxz * cxz;
+        const auto newton = (bxx > 0) & (czz > 0) & (det > slack);
+        const NAMED(V) safe = newton ? det : one;
+        const NAMED(V) magnitude = trace < 0 ? -trace : trace;
+        const NAMED(V) denominator = magnitude + REAL(0.1);
+        const NAMED(V) dx = newton ? (cxx * ax + cxy * ay + cxz * az) / safe : ax / denominator;
+        const NAMED(V) dy = newton ? (cxy * ax + cyy * ay + cyz * az) / safe : ay / denominator;
+        const NAMED(V) dz = newton ? (cxz * ax + cyz * ay + czz * az) / safe : az / denominator;
+        const NAMED(V) hx = REAL(0.5) * dx, hy = REAL(0.5) * dy, hz = REAL(0.5) * dz;
+        NAMED(V) n[4];
+        n[0] = q[0] - q[1] * hx - q[2] * hy - q[3] * hz;
+        n[1] = q[1] + q[0] * hx + q[2] * hz - q[3] * hy;
+        n[2] = q[2] + q[0] * hy + q[3] * hx - q[1] * hz;
+        n[3] = q[3] + q[0] * hz + q[1] * hy - q[2] * hx;
+        NAMED(V) length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3];
+        for (int l = 0; l < WIDTH; ++l) length[l] = SQRT(length[l]);
+        for (int k = 0; k < 4; ++k) q[k] = done ? q[k] : n[k] / length;
+        const NAMED(V) turn2 = dx * dx + dy * dy + dz * dz;
+        done = done | (turn2 < arrived) | (turn2 != turn2);
+        bool all = true;
+        for (int l = 0; l < WIDTH; ++l) all = all && done[l] != 0;
+        if (all) break;
+    }
+}
+
+TARGET static void NAMED(fit)(const void* groups, const double* x, double* rotation, double* transform,
+                              std::size_t begin, std::size_t end) {
+    const Groups<REAL>& view = *static_cast<const Groups<REAL>*>(groups);
+    for (std::size_t g = begin; g < end; ++g) {
+        const auto first = static_cast<std::size_t>(view.first_slot[g]);
+        const auto last = static_cast<std::size_t>(view.first_slot[g + 1]);
+        for (int half = 0; half < lanes; half += WIDTH) {
+            double origin[3][WIDTH];
+            for (int l = 0; l < WIDTH; ++l)
+                for (int k = 0; k < 3; ++k)
+                    origin[k][l] = x[3 * static_cast<std::size_t>(view.particle[first * lanes + half + l]) + k];
+            NAMED(V) c[3], a[9];
+            for (auto& v : c) v = NAMED(V){};
+            for (auto& v : a) v = NAMED(V){};
+            for (std::size_t slot = first; slot < last; ++slot) {
+                const std::int32_t* particle = view.particle + slot * lanes + half;
+                const REAL* member = view.member + slot * 4 * lanes + half;
+                NAMED(V) d[3], moment[3], weight;
+                const double* p[WIDTH];
+                for (int l = 0; l < WIDTH; ++l) p[l] = x + 3 * static_cast<std::size_t>(particle[l]);
+#define LANE(l) static_cast<REAL>(p[l][k] - origin[k][l])
+                for (int k = 0; k < 3; ++k) {
+#if WIDTH == 2
+                    d[k] = NAMED(V){LANE(0), LANE(1)};
+#elif WIDTH == 4
+                    d[k] = NAMED(V){LANE(0), LANE(1), LANE(2), LANE(3)};
+#else
+                    d[k] = NAMED(V){LANE(0), LANE(1), LANE(2), LANE(3), LANE(4), LANE(5), LANE(6), LANE(7)};
+#endif
+                }
+#undef LANE
+                for (int k = 0; k < 3; ++k) NAMED(load)(member + k * lanes, moment[k]);
+                NAMED(load)(member + 3 * lanes, weight);
+                for (int k = 0; k < 3; ++k) {
+                    c[k] += weight * d[k];
+                    for (int j = 0; j < 3; ++j) a[3 * k + j] += d[k] * moment[j];
+                }
+            }
+            NAMED(V) q[4], r[9];
+            double* turn = rotation + g * 4 * lanes + half;
+            for (int k = 0; k < 4; ++k)
+                for (int l = 0; l < WIDTH; ++l) q[k][l] = static_cast<REAL>(turn[k * lanes + l]);
+            NAMED(polar)(a, q);
+            NAMED(matrix_of)(q, r);
+            for (int l = 0; l < WIDTH; ++l) {
+                for (int k = 0; k < 4; ++k) turn[k * lanes + l] = static_cast<double>(q[k][l]);
+                double* out = transform + (g * lanes + static_cast<std::size_t>(half + l)) * transform_doubles;
+                const double* rest = view.rest_centroid + g * 3 * lanes + half + l;
+                for (int k = 0; k < 3; ++k) {
+                    const double r0 = r[3 * k][l], r1 = r[3 * k + 1][l], r2 = r[3 * k + 2][l];
+                    out[k] = r0;
+                    out[3 + k] = r1;
+                    out[6 + k] = r2;
+                    out[9 + k] = (origin[k][l] + static_cast<double>(c[k][l])) -
+                                 (r0 * rest[0] + r1 * rest[lanes] + r2 * rest[2 * lanes]);
+                }
+            }
+        }
+    }
+}
+
+TARGET static void NAMED(polar_of)(const double* matrix, double* quaternion) {
+    for (int half = 0; half < lanes; half += WIDTH) {
+        NAMED(V) a[9], q[4];
+        for (int l = 0; l < WIDTH; ++l) {
+            for (int k = 0; k < 9; ++k) a[k][l] = static_cast<REAL>(matrix[k * lanes + half + l]);
+            for (int k = 0; k < 4; ++k) q[k][l] = static_cast<REAL>(quaternion[k * lanes + half + l]);
+        }
+        NAMED(polar)(a, q);
+        for (int l = 0; l < WIDTH; ++l)
+            for (int k = 0; k < 4; ++k) quaternion[k * lanes + half + l] = static_cast<double>(q[k][l]);
+    }
+}

@@ -1,0 +1,28 @@
+#include "softbody/kernel.h"
+
+namespace cathlab::kernel {
+
+#if defined(__x86_64__)
+
+namespace {
+#define TARGET __attribute__((target("avx2")))
+#define DOUBLES 4
+#define FLOATS 8
+#define GATHER_WIDTH 4
+#include "softbody/kernel_copies.inl"
+}  // namespace
+
+const Set* avx2() {
+    static const Set set{"AVX2", fit_double, fit_float, gather_goals, polar_of_double, polar_of_float};
+    return __builtin_cpu_supports("avx2") ? &set : nullptr;
+}
+
+#else
+
+const Set* avx2() {
+    return nullptr;
+}
+
+#endif
+
+}  // namespace cathlab::kernel

@@ -1,0 +1,117 @@
+#include "softbody/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/check.h"
+#include "core/errors.h"
+#include "softbody/clusters.h"
+
+namespace cathlab {
+
+namespace {
+
+constexpr double largest_stiffness = 0.999;  // t_c = 1 would be an infinite stiffness, which has no compliance to share
+
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
+
+void require(bool good, const std::string& name, double found, const std::string& allowed) {
+    if (!good) throw UserError("wall: " + name + " = " + std::to_string(found) + "; it must be " + allowed);
+}
+
+void check_positive(const std::string& name, double value) {
+    require(value > 0.0 && std::isfinite(value), name, value, "above 0");
+}
+
+void check_stiffness(double value) {
+    require(value >= 0.0 && value <= largest_stiffness, "cluster_stiffness", value, "between 0 and 0.999");
+}
+
+void check(const WallParameters& p) {
+    check_positive("density_kg_mm3", p.density_kg_mm3);
+    check_positive("cluster_spacing_mm", p.cluster_spacing_mm);
+    check_positive("cluster_radius_mm", p.cluster_radius_mm);
+    check_positive("reference_spacing_mm", p.reference_spacing_mm);
+    check_stiffness(p.cluster_stiffness);
+    require(p.damping_per_s >= 0.0 && std::isfinite(p.damping_per_s), "damping_per_s", p.damping_per_s, "0 or above");
+    for (const RegionWall& own : p.regions) {
+        if (own.cluster_spacing_mm) check_positive("cluster_spacing_mm of a region", *own.cluster_spacing_mm);
+        if (own.cluster_radius_mm) check_positive("cluster_radius_mm of a region", *own.cluster_radius_mm);
+        if (own.density_kg_mm3) check_positive("density_kg_mm3 of a region", *own.density_kg_mm3);
+        if (own.cluster_stiffness) check_stiffness(*own.cluster_stiffness);
+    }
+}
+
+Index root(std::vector<Index>& parent, Index i) {
+    while (parent[at(i)] != i) {
+        parent[at(i)] = parent[at(parent[at(i)])];
+        i = parent[at(i)];
+    }
+    return i;
+}
+
+std::vector<FreeBody> find_free_bodies(const Membership& membership, const std::vector<std::uint8_t>& fixed) {
+    std::vector<Index> parent(fixed.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    for (const auto& members : membership)
+        for (const Index i : members) {
+            const Index a = root(parent, members.front()), b = root(parent, i);
+            parent[at(std::max(a, b))] = std::min(a, b);
+        }
+    std::vector<std::uint8_t> held(fixed.size(), 0);
+    for (std::size_t i = 0; i < fixed.size(); ++i)
+        if (fixed[i]) held[at(root(parent, static_cast<Index>(i)))] = 1;
+    std::vector<FreeBody> bodies;
+    std::vector<Index> body_of(fixed.size(), -1);
+    for (std::size_t i = 0; i < fixed.size(); ++i) {
+        const std::size_t r = at(root(parent, static_cast<Index>(i)));
+        if (held[r]) continue;
+        if (body_of[r] < 0) {
+            body_of[r] = static_cast<Index>(bodies.size());
+            bodies.emplace_back();
+        }
+        bodies[at(body_of[r])].particles.push_back(static_cast<Index>(i));
+    }
+    return bodies;
+}
+
+}  // namespace
+
+SoftBodyModel build_soft_body(const WallSample& sample, const WallParameters& parameters,
+                              const std::function<bool(const Vec3&)>& is_fixed) {
+    check(parameters);
+    const std::size_t n = sample.position.size();
+    if (n == 0) throw UserError("the wall has no particles");
+    CATHLAB_CHECK(sample.area_mm2.size() == n && sample.thickness_mm.size() == n && sample.region.size() == n,
+                  "one area, thickness and region a particle");
+    SoftBodyModel model;
+    model.rest = sample.position;
+    model.normal = sample.normal;
+    model.normal.resize(n, Vec3::Zero());
+    model.region = sample.region;
+    model.links = sample.links;
+    model.damping_per_s = parameters.damping_per_s;
+    model.precision = parameters.precision;
+    for (std::size_t i = 0; i < n; ++i) {
+        double density = parameters.density_kg_mm3, t_c = parameters.cluster_stiffness;
+        for (const RegionWall& own : parameters.regions) {
+            if (own.region != sample.region[i]) continue;
+            density = own.density_kg_mm3.value_or(density);
+            t_c = own.cluster_stiffness.value_or(t_c);
+        }
+        const double mass = density * sample.area_mm2[i] * sample.thickness_mm[i];
+        CATHLAB_CHECK(mass > 0.0, "a wall particle without mass");
+        model.mass.push_back(mass);
+        model.stiffness.push_back(mass / (reference_step_s * reference_step_s) * t_c / (1.0 - t_c));
+        model.fixed.push_back(is_fixed && is_fixed(sample.position[i]) ? 1 : 0);
+    }
+    const Membership membership = grow_clusters(sample, parameters);
+    pack_clusters(membership, model);
+    model.free_bodies = find_free_bodies(membership, model.fixed);
+    return model;
+}
+
+}  // namespace cathlab

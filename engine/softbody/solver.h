@@ -1,0 +1,64 @@
+// One substep of the soft wall: predict, then as often as wanted { solve_goals, apply }, then finish.
+//
+// Each particle obeys, implicitly,
+//     x_i = (m_i/h^2 x~_i + k_i g_i + f_i) / (m_i/h^2 + k_i)          m kg, h s, k mN/mm, f mN
+// with x~ the prediction and g the mean of the goals  R_c (X_i - X_c) + x_c  of its clusters.  A force of rows
+// therefore moves the particle by its compliance  c_i = 1 / (m_i/h^2 + k_i)  within an iteration, and in equilibrium
+// k_i (x_i - g_i) = f_i whatever the step and the number of iterations.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/archive.h"
+#include "core/parallel.h"
+#include "softbody/model.h"
+
+namespace cathlab {
+
+struct SoftBodyState {
+    std::vector<Vec3> x;           ///< (n) mm, world
+    std::vector<Vec3> v;           ///< (n) mm/s
+    std::vector<Vec3> goal;        ///< (n) mm, the goals at the end of the last substep (damping)
+    std::vector<double> rotation;  ///< (groups x {w, x, y, z} x 8) of the clusters, warm start of their fits
+};
+void visit(Archive& archive, SoftBodyState& state);
+
+/// What lives within a substep only.
+struct SoftBodyScratch {
+    std::vector<Vec3> start;           ///< (n) x when the substep began
+    std::vector<Vec3> predicted;       ///< (n) x~
+    std::vector<Vec3> goal;            ///< (n) g, written by solve_goals
+    std::vector<Vec3> force;           ///< (n) mN; rows write here, predict clears
+    std::vector<Vec3> external_force;  ///< (n) mN, or empty: what predict was given
+    std::vector<double> compliance;    ///< (n) c_i, mm/mN, written by predict; 0 for fixed particles
+    std::vector<double>
+        stiffness_scale;  ///< (n) factor on k_i, > 0, or empty for 1: effects of the material write it before predict
+    std::vector<double> transform;  ///< (lanes x 12) of the clusters
+    std::vector<Vec3> momentum;     ///< linear and angular of each free body when the substep began, two each
+};
+
+SoftBodyState rest_state(const SoftBodyModel& model);
+
+/// x~ = x + h v + h^2 f / m; fixed particles go to fixed_target (one a particle; empty: they stay).  Clears
+/// scratch.force and writes scratch.compliance.  The first fit starts from x~, except that a force moves this start by
+/// 0.5 mm at most: a hard local pull would tear the clusters' fits apart for nothing, and the iteration has the same
+/// end from either start.
+void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+             std::span<const Vec3> fixed_target, std::span<const Vec3> external_force, const Workers& workers);
+
+/// Fits every cluster to state.x (weights m_i / n_i) and writes scratch.goal.
+void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers);
+
+/// state.x from x~, goals and scratch.force.
+void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+           const Workers& workers);
+
+/// v = (x - x_start) / h, drawn towards the velocity of the goal, (g - g_last) / h, at the model's damping rate: a
+/// rigid motion carries its goals along and is not slowed.  A free body (no fixed particle) gets the linear and angular
+/// momentum that it had plus the impulse of its forces: what a fit to a turning body loses in second order of the step
+/// is given back.
+void finish(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+            const Workers& workers);
+
+}  // namespace cathlab
