@@ -1,0 +1,49 @@
+// Where is the wall, and on which side of it are we?
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "contact/lumen_surface.h"
+
+namespace cathlab {
+
+/// A point of the lumen surface as a device point sees it.
+struct SurfacePoint {
+    Index triangle = -1;                ///< -1 = nothing within reach
+    Vec3 barycentric = Vec3::Zero();    ///< of the triangle's corners, >= 0, sum 1
+    Vec3 point = Vec3::Zero();          ///< mm, world
+    Vec3 inward_normal = Vec3::Zero();  ///< unit, into the lumen; zero only where the surface around is degenerate
+    double signed_distance = 0.0;       ///< mm, positive inside the lumen
+
+    bool found() const { return triangle >= 0; }
+};
+
+/// Closest point of the surface within max_distance (mm) of p, exact, with its side by the pseudo-normal of the feature
+/// (face, edge, vertex) that it lies on [baerentzen2005].  inward_normal = +-(p - point)/|p - point|, turned into the
+/// lumen; nearer than 1e-6 mm the pseudo-normal itself.  Of equally near triangles the one with the lowest index.
+///
+/// hint = the triangle found for the same device point before, or -1.  It starts the search, and it decides in which
+/// vessel the point is.  Let G be the closest point of all.  Where G lies on a triangle that touches the hint, or that
+/// is connected to it through triangles within (distance from p to the hint + 0.5 mm) of p, G is the answer.  Otherwise
+/// let L be the closest point of that connected patch: if p is outside by L, it went out through the patch and the wall
+/// of a neighbouring vessel, however near, is not its own: the answer is L.  If p is inside by L, it only crossed the
+/// lumen: the answer is G. A hint further than 6 mm from p says nothing.
+///
+/// p must be finite (std::logic_error).
+SurfacePoint closest(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p, double max_distance,
+                     Index hint = -1);
+
+/// The place where the segment from a to b first leaves the lumen (crosses a triangle against its inward normal), if
+/// any. signed_distance is that of b to the plane of the triangle.
+std::optional<SurfacePoint> first_exit(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& a,
+                                       const Vec3& b);
+
+/// Further walls that a sphere about p meets within `reach` besides `nearest` (wedged in a narrow vessel, in a corner):
+/// up to `at_most` points, nearest first, seen from the inside, whose directions differ by more than 60 degrees from
+/// each other's, and which are nearly foot points (the direction to p within 30 degrees of the surface's normal).  On a
+/// flat wall there is none: a point beside the foot point would hold the sphere back from sliding.
+std::vector<SurfacePoint> further_walls(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p,
+                                        double reach, const SurfacePoint& nearest, int at_most);
+
+}  // namespace cathlab

@@ -1,0 +1,287 @@
+#include "contact/contact_set.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "core/check.h"
+
+namespace cathlab {
+namespace {
+
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
+std::size_t at(std::int64_t i) {
+    return static_cast<std::size_t>(i);
+}
+
+/// Largest |t| of friction * lambda along t.
+Vec3 into_cone(const Vec3& t, double limit) {
+    const double size = t.norm();
+    return size > limit ? Vec3(t * (limit / size)) : t;
+}
+
+Vec3 tangential(const Vec3& v, const Vec3& normal) {
+    return v - v.dot(normal) * normal;
+}
+
+}  // namespace
+
+struct ContactSet::Found {
+    std::array<SurfacePoint, 3> wall;
+    int count = 0;
+    Index hint = -1;
+};
+
+ContactSet::ContactSet(const ContactSettings& settings) : settings_(settings) {
+    CATHLAB_CHECK(settings.recovery_mm > 0.0 && settings.min_compliance_mm_per_mn > 0.0 && settings.match_mm >= 0.0,
+                  "contact settings must be positive");
+    CATHLAB_CHECK(settings.rows_per_sample >= 1 && settings.rows_per_sample <= 3, "one to three rows a sample");
+    memory_.first_row.push_back(0);
+}
+
+ContactSet::Found ContactSet::look(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
+                                   const DeviceSample& sample, Index hint, double margin) const {
+    Found found;
+    const Vec3 motion = sample.position - sample.previous;
+    const double moved = motion.norm();
+    if (moved > 0.5 * margin) {
+        // A sample that was pressed into the wall already has left: its own wall is the one it remembers.  Where walls
+        // of two vessels overlap, the first exit ahead of it would be the neighbour's.
+        const bool was_inside =
+            hint < 0 || closest(model, surface, sample.previous, settings_.recovery_mm, hint).signed_distance >= 0.0;
+        const auto exit = was_inside ? first_exit(model, surface, sample.previous, sample.position) : std::nullopt;
+        if (exit) hint = exit->triangle;
+    }
+    const double reach = sample.radius + margin;
+    const SurfacePoint nearest =
+        closest(model, surface, sample.position, std::max(reach, settings_.recovery_mm + moved), hint);
+    found.hint = nearest.triangle;
+    if (!nearest.found() || nearest.signed_distance > reach || nearest.inward_normal.squaredNorm() < 0.5) return found;
+    found.wall[static_cast<std::size_t>(found.count++)] = nearest;
+    for (const SurfacePoint& wall :
+         further_walls(model, surface, sample.position, reach, nearest, settings_.rows_per_sample - 1)) {
+        found.wall[static_cast<std::size_t>(found.count++)] = wall;
+    }
+    return found;
+}
+
+void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
+                        std::span<const DeviceSample> samples, double margin, std::span<const Vec3> particles_before,
+                        std::span<const double> particle_compliance, const Workers& workers) {
+    CATHLAB_CHECK(margin > 0.0, "contact margin must be positive");
+    CATHLAB_CHECK(
+        particles_before.size() >= at(model.particle_count) && particle_compliance.size() == particles_before.size(),
+        "one position and one compliance a particle");
+    for (const DeviceSample& s : samples) {
+        CATHLAB_CHECK(s.position.allFinite() && s.previous.allFinite() && s.arm.allFinite() && s.rotation.allFinite() &&
+                          std::isfinite(s.arc_mm),
+                      "a device sample must be finite");
+        CATHLAB_CHECK(s.radius > 0.0 && std::isfinite(s.radius) && s.friction >= 0.0, "a device sample needs a radius");
+    }
+    const Memory old_memory = std::move(memory_);
+    const std::vector<ChainRow> old_rows = std::move(rows_);
+    memory_ = {};
+    rows_.clear();
+    wall_.clear();
+    particle_.clear();
+    weight_.clear();
+
+    const std::size_t n = samples.size();
+    memory_.place.resize(n);
+    std::iota(memory_.place.begin(), memory_.place.end(), 0);
+    std::sort(memory_.place.begin(), memory_.place.end(), [&](std::int64_t a, std::int64_t b) {
+        const DeviceSample& sa = samples[at(a)];
+        const DeviceSample& sb = samples[at(b)];
+        if (sa.device != sb.device) return sa.device < sb.device;
+        return sa.arc_mm != sb.arc_mm ? sa.arc_mm < sb.arc_mm : a < b;
+    });
+
+    // Both lists are sorted: the nearest remembered sample of the same device is found in one walk.
+    std::vector<std::int64_t> remembered(n, -1);
+    std::size_t old = 0;
+    const std::size_t old_count = old_memory.device.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const DeviceSample& s = samples[at(memory_.place[i])];
+        const auto before = [&](std::size_t o) {
+            return old_memory.device[o] < s.device ||
+                   (old_memory.device[o] == s.device && old_memory.arc[o] <= s.arc_mm);
+        };
+        while (old < old_count && before(old)) ++old;
+        double nearest = settings_.match_mm;
+        for (std::size_t o = old > 0 ? old - 1 : 0; o < std::min(old + 1, old_count); ++o) {
+            const double distance = std::fabs(old_memory.arc[o] - s.arc_mm);
+            if (old_memory.device[o] == s.device && distance < nearest) {
+                nearest = distance;
+                remembered[i] = static_cast<std::int64_t>(o);
+            }
+        }
+    }
+
+    std::vector<Found> found(n);
+    const auto triangles = static_cast<Index>(model.triangles.size());
+    workers.for_ranges(n, 32, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const DeviceSample& s = samples[at(memory_.place[i])];
+            Index hint = s.hint;
+            if (hint < 0 && remembered[i] >= 0) hint = old_memory.triangle[at(old_memory.place[at(remembered[i])])];
+            found[i] = look(model, surface, s, hint < triangles ? hint : -1, margin);
+        }
+    });
+
+    memory_.triangle.assign(n, -1);
+    sample_before_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::int64_t place = memory_.place[i];
+        const DeviceSample& s = samples[at(place)];
+        memory_.device.push_back(s.device);
+        memory_.arc.push_back(s.arc_mm);
+        memory_.first_row.push_back(static_cast<std::int64_t>(rows_.size()));
+        memory_.triangle[at(place)] = found[i].hint;
+        sample_before_[at(place)] = s.previous;
+        for (int k = 0; k < found[i].count; ++k) {
+            const SurfacePoint& at_wall = found[i].wall[static_cast<std::size_t>(k)];
+            WallRow wall;
+            wall.sample = static_cast<Index>(place);
+            wall.device = s.device;
+            wall.triangle = at_wall.triangle;
+            wall.region = model.triangle_region[at(at_wall.triangle)];
+            wall.kinematic = s.kinematic;
+            wall.radius = s.radius;
+            wall.arc_mm = s.arc_mm;
+            wall.barycentric = at_wall.barycentric;
+            wall.begin = particle_.size();
+            for (int corner = 0; corner < 3; ++corner) {
+                const std::size_t v = at(model.triangles[at(at_wall.triangle)][corner]);
+                for (Index b = model.binding.start[v]; b < model.binding.start[v + 1]; ++b) {
+                    const Index particle = model.binding.particle[at(b)];
+                    const double weight = at_wall.barycentric[corner] * model.binding.weight[at(b)];
+                    const auto first = particle_.begin() + static_cast<std::ptrdiff_t>(wall.begin);
+                    const auto known = std::find(first, particle_.end(), particle);
+                    if (known != particle_.end()) {
+                        weight_[static_cast<std::size_t>(known - particle_.begin())] += weight;
+                    } else if (weight != 0.0) {
+                        particle_.push_back(particle);
+                        weight_.push_back(weight);
+                    }
+                }
+            }
+            wall.end = particle_.size();
+            for (std::size_t j = wall.begin; j < wall.end; ++j) {
+                wall.point_before += weight_[j] * particles_before[at(particle_[j])];
+            }
+            wall.point = at_wall.point;
+            ChainRow row;
+            row.link = s.link;
+            row.normal = at_wall.inward_normal;
+            row.friction = s.friction;
+            warm_start(row, remembered[i], old_rows, old_memory);
+            rows_.push_back(row);
+            wall_.push_back(wall);
+        }
+    }
+    memory_.first_row.push_back(static_cast<std::int64_t>(rows_.size()));
+    set_compliance(particle_compliance);
+}
+
+void ContactSet::warm_start(ChainRow& row, std::int64_t remembered, const std::vector<ChainRow>& old_rows,
+                            const Memory& old_memory) const {
+    if (remembered < 0) return;
+    const ChainRow* same = nullptr;
+    double likeness = 0.5;  // the walls of one sample stand 60 degrees apart
+    for (std::int64_t r = old_memory.first_row[at(remembered)]; r < old_memory.first_row[at(remembered) + 1]; ++r) {
+        const double cosine = old_rows[at(r)].normal.dot(row.normal);
+        if (cosine > likeness) {
+            likeness = cosine;
+            same = &old_rows[at(r)];
+        }
+    }
+    if (same == nullptr) return;
+    row.multiplier = same->multiplier;
+    row.tangent_force = into_cone(tangential(same->tangent_force, row.normal), row.friction * row.multiplier);
+}
+
+void ContactSet::set_compliance(std::span<const double> particle_compliance) {
+    touching_.resize(particle_compliance.size(), 0);
+    for (const Index p : particle_) ++touching_[at(p)];
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+        double compliance = 0.0;
+        for (std::size_t j = wall_[r].begin; j < wall_[r].end; ++j) {
+            const std::size_t p = at(particle_[j]);
+            compliance += weight_[j] * weight_[j] * particle_compliance[p] * touching_[p];
+        }
+        rows_[r].compliance = std::max(compliance, settings_.min_compliance_mm_per_mn);
+    }
+    for (const Index p : particle_) touching_[at(p)] = 0;
+}
+
+void ContactSet::refresh(std::span<const DeviceSample> samples_now, std::span<const Vec3> particles_now) {
+    CATHLAB_CHECK(samples_now.size() == sample_before_.size(), "refresh takes the samples of detect");
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+        ChainRow& row = rows_[r];
+        WallRow& wall = wall_[r];
+        const DeviceSample& s = samples_now[at(wall.sample)];
+        Vec3 q = Vec3::Zero();
+        for (std::size_t j = wall.begin; j < wall.end; ++j) q += weight_[j] * particles_now[at(particle_[j])];
+        wall.point = q;
+        row.gap = row.normal.dot(s.position - q) - wall.radius;
+        // Forces act where the surfaces meet, so friction also turns the device about its axis.
+        row.arm = s.arm - wall.radius * row.normal;
+        const Vec3 relative = (s.position - sample_before_[at(wall.sample)]) - (q - wall.point_before) -
+                              wall.radius * s.rotation.cross(row.normal);
+        row.slip = tangential(relative, row.normal);
+    }
+}
+
+std::span<ChainRow> ContactSet::chain_rows(Index device) {
+    const auto range =
+        std::equal_range(memory_.device.begin(), memory_.device.end(), static_cast<std::int64_t>(device));
+    const std::int64_t begin = memory_.first_row[static_cast<std::size_t>(range.first - memory_.device.begin())];
+    const std::int64_t end = memory_.first_row[static_cast<std::size_t>(range.second - memory_.device.begin())];
+    return std::span<ChainRow>(rows_).subspan(at(begin), at(end - begin));
+}
+
+void ContactSet::solve_kinematic() {
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+        if (!wall_[r].kinematic) continue;
+        ChainRow& row = rows_[r];
+        row.multiplier = std::max(0.0, row.multiplier - row.gap / row.compliance);
+        row.tangent_force = into_cone(tangential(row.tangent_force, row.normal) - row.slip / row.compliance,
+                                      row.friction * row.multiplier);
+    }
+}
+
+void ContactSet::apply_to_wall(std::span<Vec3> force) const {
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+        const ChainRow& row = rows_[r];
+        if (row.multiplier == 0.0 && row.tangent_force.isZero(0.0)) continue;
+        const Vec3 on_device = row.multiplier * row.normal + row.tangent_force;
+        for (std::size_t j = wall_[r].begin; j < wall_[r].end; ++j) force[at(particle_[j])] -= weight_[j] * on_device;
+    }
+}
+
+void ContactSet::clear() {
+    *this = ContactSet(settings_);
+}
+
+void visit(Archive& archive, ContactSet& set) {
+    std::vector<double> multiplier;
+    std::vector<Vec3> normal, tangent;
+    for (const ChainRow& row : set.rows_) {
+        multiplier.push_back(row.multiplier);
+        normal.push_back(row.normal);
+        tangent.push_back(row.tangent_force);
+    }
+    std::vector<std::int64_t> triangle(set.memory_.triangle.begin(), set.memory_.triangle.end());
+    archive.field("device", set.memory_.device);
+    archive.field("arc_mm", set.memory_.arc);
+    archive.field("triangle", triangle);
+    archive.field("first_row", set.memory_.first_row);
+    archive.field("multiplier_mn", multiplier);
+    archive.field("normal", normal);
+    archive.field("tangent_force_mn", tangent);
+}
+
+}  // namespace cathlab

@@ -1,0 +1,133 @@
+// All rows between the devices and the wall in one substep, and what they remember from the one before.
+//
+// In a substep: detect once (after predict), then in every iteration refresh, let the chain solve take
+// chain_rows(device), solve_kinematic, apply_to_wall.  A row holds sample point p, wall point q = sum w_j x_j, normal n
+// into the lumen:
+//     gap = n . (p - q) - radius                                     mm
+//     C   = max(sum w_j^2 c_j N_j, min_compliance)                   mm/mN, N_j = rows that touch particle j
+//     lambda' = max(0, lambda - gap / C),  |t| <= friction * lambda' mN
+// The device gets lambda n + t, particle j gets -w_j (lambda n + t): the weights sum to one and sum w_j x_j = q, so
+// force and moment about any point are handed over in full.  N_j keeps a solve that averages over rows from
+// overshooting; it changes how fast the answer is reached and not the answer, which is gap = 0 or lambda = 0.
+//
+// Nothing tunnels: a sample at rest or moving at the devices' top speed (100 mm/s: 0.4 mm in a substep of 4 ms; 0.8 mm
+// with the wall coming to meet it) was within that distance of where it is found now, inside.  Rows are made for gaps
+// up to `margin` (which must exceed 0.8 mm: a row that is still open is speculative, it lets the sample come to the
+// surface in this substep and no further), and for samples already outside by up to `recovery` on the side they came
+// from (closest_point.h, hint).  What moves further in one substep than half the margin is swept: the first triangle
+// that its path leaves the lumen through takes the place of the hint, whatever lies behind it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "contact/closest_point.h"
+#include "contact/rows.h"
+#include "core/archive.h"
+#include "core/parallel.h"
+
+namespace cathlab {
+
+struct ContactSettings {
+    double recovery_mm = 4.0;                ///< a sample's centre further outside than this gets no row; > 0
+    double min_compliance_mm_per_mn = 1e-4;  ///< a wall that is held rigidly counts as a spring of 10 N/mm; > 0
+    double match_mm = 0.5;                   ///< samples whose arc lengths differ by less are the same one
+    int rows_per_sample = 3;                 ///< 1 to 3
+    double tip_length_mm = 10.0;             ///< what counts as the tip in the sums
+};
+
+/// Sums over the rows of one device.
+struct DeviceContact {
+    Index device = 0;
+    Index active = 0;              ///< rows with a force
+    double normal_mn = 0.0;        ///< sum of lambda
+    double total_mn = 0.0;         ///< sum of |lambda n + t|
+    double tip_mn = 0.0;           ///< the same within tip_length of the tip
+    Vec3 force_mn = Vec3::Zero();  ///< net force on the device
+    double penetration_mm = 0.0;   ///< largest -gap, >= 0
+};
+
+struct ContactReport {
+    std::vector<DeviceContact> devices;  ///< ascending; those with a sample
+    std::vector<double> region_mn;       ///< sum of |lambda n + t| by region
+    Index active = 0;
+    double penetration_mm = 0.0;
+    double force_imbalance = 0.0;  ///< |forces on devices + forces on particles| / sum |force|; rounding alone
+    double moment_imbalance =
+        0.0;  ///< the same for moments about the origin, taken at the wall points, / sum |q x force|
+};
+
+class ContactSet {
+public:
+    explicit ContactSet(const ContactSettings& settings = {});
+
+    /// Makes the rows of this substep, sorted by (device, arc length, nearest wall first), warm started from the last
+    /// ones. samples: in any order, each (device, arc_mm) once.  margin: mm, > 0.8 at the default substep (see above).
+    /// particles_before, particle_compliance: one a particle, positions at the beginning of the substep (mm) and c_j
+    /// (mm/mN). Throws std::logic_error for samples that are not finite or have no radius.
+    void detect(const LumenSurfaceModel& model, const LumenSurfaceState& surface, std::span<const DeviceSample> samples,
+                double margin, std::span<const Vec3> particles_before, std::span<const double> particle_compliance,
+                const Workers& workers);
+
+    /// Gap, slip and arm of every row from the samples (same number and order as in detect; position, arm and rotation
+    /// are read) and the particles where they are now.  Normal, weights and compliance stay.
+    void refresh(std::span<const DeviceSample> samples_now, std::span<const Vec3> particles_now);
+
+    /// The rows of one device for the chain solve, contiguous, ascending from the tip; multipliers are in and out.
+    std::span<ChainRow> chain_rows(Index device);
+
+    /// One pass over the rows of kinematic samples.
+    void solve_kinematic();
+
+    /// Adds -w_j (lambda n + t) of every row to force (mN, one a particle), in the order of the rows.
+    void apply_to_wall(std::span<Vec3> force) const;
+
+    /// Sums of the rows as they are now.  particles: as in the last refresh.
+    ContactReport report(std::span<const Vec3> particles) const;
+
+    /// Adds the force on the wall (mN) to out (one a triangle).
+    void add_triangle_forces(std::span<Vec3> out) const;
+
+    /// No rows, no memory (a new run).
+    void clear();
+
+    std::span<const ChainRow> rows() const { return rows_; }
+    std::span<const WallRow> wall_rows() const { return wall_; }
+    std::span<const Index> particles() const { return particle_; }
+    std::span<const double> weights() const { return weight_; }
+    /// Triangle last seen by sample s of detect, -1 = none.
+    Index hint(std::size_t sample) const { return memory_.triangle[sample]; }
+    const ContactSettings& settings() const { return settings_; }
+
+    friend void visit(Archive& archive, ContactSet& set);
+
+private:
+    /// What a sample leaves behind for the next substep, sorted by (device, arc).
+    struct Memory {
+        std::vector<std::int64_t> device, first_row;  ///< first_row has one entry more
+        std::vector<double> arc;
+        std::vector<std::int64_t> place;  ///< of the sample in its span
+        std::vector<Index> triangle;      ///< by place
+    };
+    struct Found;
+
+    Found look(const LumenSurfaceModel& model, const LumenSurfaceState& surface, const DeviceSample& sample, Index hint,
+               double margin) const;
+    void warm_start(ChainRow& row, std::int64_t remembered, const std::vector<ChainRow>& old_rows,
+                    const Memory& old_memory) const;
+    void set_compliance(std::span<const double> particle_compliance);
+
+    ContactSettings settings_;
+    std::vector<ChainRow> rows_;
+    std::vector<WallRow> wall_;
+    std::vector<Vec3> sample_before_;  ///< by place
+    std::vector<Index> particle_;
+    std::vector<double> weight_;
+    std::vector<Index> touching_;  ///< N_j, one a particle; zero outside set_compliance
+    Memory memory_;
+};
+
+void visit(Archive& archive, ContactSet& set);
+
+}  // namespace cathlab

@@ -1,0 +1,94 @@
+#include "contact/surface_tree.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace cathlab {
+namespace {
+
+constexpr Index leaf_size = 4;
+
+Vec3 centroid(const Triangle& t, std::span<const Vec3> vertices) {
+    return (vertices[static_cast<std::size_t>(t[0])] + vertices[static_cast<std::size_t>(t[1])] +
+            vertices[static_cast<std::size_t>(t[2])]) /
+           3.0;
+}
+
+}  // namespace
+
+SurfaceTree build_surface_tree(std::span<const Triangle> triangles, std::span<const Vec3> vertices) {
+    SurfaceTree tree;
+    const auto count = static_cast<Index>(triangles.size());
+    if (count == 0) return tree;
+    std::vector<Vec3> centre(triangles.size());
+    for (std::size_t t = 0; t < triangles.size(); ++t) centre[t] = centroid(triangles[t], vertices);
+    tree.order.resize(triangles.size());
+    std::iota(tree.order.begin(), tree.order.end(), 0);
+    tree.nodes.push_back({0, count});
+    // Nodes wait in `nodes` as leaves with all their triangles; each is split when its turn comes, so children follow
+    // parents.
+    for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+        const SurfaceTree::Node node = tree.nodes[n];
+        if (node.count <= leaf_size) {
+            tree.leaves.push_back(static_cast<Index>(n));
+            continue;
+        }
+        const auto begin = tree.order.begin() + node.first;
+        const auto end = begin + node.count;
+        Vec3 low = centre[static_cast<std::size_t>(*begin)];
+        Vec3 high = low;
+        for (auto i = begin; i != end; ++i) {
+            low = low.cwiseMin(centre[static_cast<std::size_t>(*i)]);
+            high = high.cwiseMax(centre[static_cast<std::size_t>(*i)]);
+        }
+        int axis = 0;
+        (high - low).maxCoeff(&axis);
+        const Index half = node.count / 2;
+        std::nth_element(begin, begin + half, end, [&](Index a, Index b) {
+            const double ca = centre[static_cast<std::size_t>(a)][axis];
+            const double cb = centre[static_cast<std::size_t>(b)][axis];
+            return ca < cb || (ca == cb && a < b);
+        });
+        // nth_element leaves each half in an order of the library's choosing.
+        std::sort(begin, begin + half);
+        std::sort(begin + half, end);
+        const auto left = static_cast<Index>(tree.nodes.size());
+        tree.nodes[n] = {left, 0};
+        tree.nodes.push_back({node.first, half});
+        tree.nodes.push_back({node.first + half, node.count - half});
+    }
+    return tree;
+}
+
+void refit(const SurfaceTree& tree, std::span<const Triangle> triangles, std::span<const Vec3> vertices,
+           std::vector<SurfaceBox>& boxes, const Workers& workers) {
+    boxes.resize(tree.nodes.size());
+    workers.for_ranges(tree.leaves.size(), 512, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t l = begin; l < end; ++l) {
+            const auto n = static_cast<std::size_t>(tree.leaves[l]);
+            const SurfaceTree::Node& node = tree.nodes[n];
+            const Triangle& first =
+                triangles[static_cast<std::size_t>(tree.order[static_cast<std::size_t>(node.first)])];
+            Vec3 low = vertices[static_cast<std::size_t>(first[0])];
+            Vec3 high = low;
+            for (Index i = node.first; i < node.first + node.count; ++i) {
+                const Triangle& t = triangles[static_cast<std::size_t>(tree.order[static_cast<std::size_t>(i)])];
+                for (int k = 0; k < 3; ++k) {
+                    const Vec3& v = vertices[static_cast<std::size_t>(t[k])];
+                    low = low.cwiseMin(v);
+                    high = high.cwiseMax(v);
+                }
+            }
+            boxes[n] = {low, high};
+        }
+    });
+    for (std::size_t n = tree.nodes.size(); n-- > 0;) {
+        const SurfaceTree::Node& node = tree.nodes[n];
+        if (node.count > 0) continue;
+        const SurfaceBox& left = boxes[static_cast<std::size_t>(node.first)];
+        const SurfaceBox& right = boxes[static_cast<std::size_t>(node.first) + 1];
+        boxes[n] = {left.low.cwiseMin(right.low), left.high.cwiseMax(right.high)};
+    }
+}
+
+}  // namespace cathlab

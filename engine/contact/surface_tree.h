@@ -1,0 +1,79 @@
+// A tree of boxes over the triangles of the lumen surface.  Its topology is built once, on the surface at rest; while
+// the wall deforms only the boxes follow (refit).  A vessel bends and swells but neighbours on its wall stay
+// neighbours, so the boxes stay nearly as tight as those of a new tree.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/types.h"
+
+namespace cathlab {
+
+struct SurfaceBox {
+    Vec3 low = Vec3::Zero();
+    Vec3 high = Vec3::Zero();
+
+    /// Squared distance from p to the box, mm2; 0 inside.
+    double squared_distance(const Vec3& p) const {
+        double sum = 0.0;
+        for (int a = 0; a < 3; ++a) {
+            const double below = low[a] - p[a];
+            const double above = p[a] - high[a];
+            const double d = below > above ? below : above;
+            if (d > 0.0) sum += d * d;
+        }
+        return sum;
+    }
+};
+
+/// Topology alone; const after build.  Node 0 is the root and children have higher indices than their parent.
+struct SurfaceTree {
+    struct Node {
+        Index first = 0;  ///< leaf: first place in `order`; inner node: left child (the right one is first + 1)
+        Index count = 0;  ///< triangles of a leaf; 0 = inner node
+    };
+    std::vector<Node> nodes;
+    std::vector<Index> order;   ///< triangle indices, leaf after leaf
+    std::vector<Index> leaves;  ///< nodes that are leaves, ascending
+};
+
+/// Splits at the median centroid along the longest axis; ties by triangle index, so the same mesh gives the same tree.
+SurfaceTree build_surface_tree(std::span<const Triangle> triangles, std::span<const Vec3> vertices);
+
+/// Boxes (one a node) around the triangles where they are now.  min and max are exact: any thread count gives the same
+/// bits.
+void refit(const SurfaceTree& tree, std::span<const Triangle> triangles, std::span<const Vec3> vertices,
+           std::vector<SurfaceBox>& boxes, const Workers& workers);
+
+/// Calls visit(triangle) for every triangle whose leaf box is within sqrt(bound()) of p, near boxes first; bound() is
+/// asked again at every box, so visit may shrink it.
+template <class Visit, class Bound>
+void for_near_triangles(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes, const Vec3& p,
+                        const Bound& bound, const Visit& visit) {
+    struct Entry {
+        Index node;
+        double distance;
+    };
+    Entry stack[64];  // the tree is balanced: its depth is log2 of the triangles, below 32
+    int top = 0;
+    if (tree.nodes.empty()) return;
+    stack[top++] = {0, boxes[0].squared_distance(p)};
+    while (top > 0) {
+        const Entry entry = stack[--top];
+        if (entry.distance > bound()) continue;
+        const SurfaceTree::Node& node = tree.nodes[static_cast<std::size_t>(entry.node)];
+        if (node.count > 0) {
+            for (Index i = node.first; i < node.first + node.count; ++i) visit(tree.order[static_cast<std::size_t>(i)]);
+            continue;
+        }
+        const double left = boxes[static_cast<std::size_t>(node.first)].squared_distance(p);
+        const double right = boxes[static_cast<std::size_t>(node.first) + 1].squared_distance(p);
+        const bool left_first = left <= right;
+        stack[top++] = left_first ? Entry{node.first + 1, right} : Entry{node.first, left};
+        stack[top++] = left_first ? Entry{node.first, left} : Entry{node.first + 1, right};
+    }
+}
+
+}  // namespace cathlab
