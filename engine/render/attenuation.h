@@ -1,0 +1,32 @@
+// The beam in energy bins, and every material's attenuation in each of them.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace cathlab {
+
+inline constexpr std::size_t energy_bins = 8;
+using BinValues = std::array<float, energy_bins>;
+
+/// Share of each bin in the detector's signal behind the filters, without a patient (sum 1), and mu of the materials.
+class BeamTable {
+public:
+    /// Tungsten anode (Kramers' law), 2.5 mm Al, copper_mm Cu, energy-integrating CsI of 0.55 mm.
+    /// kvp in [40, 150], copper_mm in [0, 1.5]; throws UserError otherwise.
+    BeamTable(double kvp, double copper_mm);
+
+    const BinValues& weights() const { return weights_; }
+    /// Linear attenuation coefficient in 1/mm per bin (mean over the bin); "air" is 0.
+    /// Throws UserError with the nearest name for a material that is not in the table.
+    BinValues attenuation(const std::string& material) const;
+    /// 1/mm per bin for one mg/mL of iodine.
+    BinValues iodine() const;
+
+private:
+    std::vector<double> energy_kev_, weight_;  // fine grid, energy_bins equal runs
+    BinValues weights_{};
+};
+
+}  // namespace cathlab

@@ -1,0 +1,166 @@
+#include "render/detector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/check.h"
+
+namespace cathlab {
+
+namespace {
+
+constexpr std::size_t rows_per_task = 32;
+
+template <class Body>
+void for_rows(const ImageF& image, const Workers& workers, const Body& body) {
+    workers.for_ranges(static_cast<std::size_t>(image.height), rows_per_task, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t y = begin; y < end; ++y) body(y);
+    });
+}
+
+// SplitMix64's finaliser [steele2014].
+inline std::uint64_t mixed(std::uint64_t z) {
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+    return z ^ (z >> 31);
+}
+
+inline std::uint64_t frame_key(std::uint64_t seed, std::uint64_t frame, std::uint64_t stream) {
+    return mixed(seed * 0x9E3779B97F4A7C15ULL + mixed(frame * 4 + stream + 0x632BE59BD9B4E019ULL));
+}
+
+inline float normal_of(std::uint64_t key, std::uint64_t pixel) {
+    const std::uint64_t bits = mixed(key + pixel * 0x9E3779B97F4A7C15ULL);
+    const auto sum =
+        static_cast<std::int32_t>((bits & 0xFFFF) + ((bits >> 16) & 0xFFFF) + ((bits >> 32) & 0xFFFF) + (bits >> 48));
+    // Variance of one uniform on 0..65535 is (65536^2 - 1) / 12.
+    return static_cast<float>(sum - 131070) * (1.7320508F / 65536.0F);
+}
+
+std::vector<float> gaussian(double sigma) {
+    const int radius = static_cast<int>(std::ceil(3 * sigma));
+    std::vector<float> kernel;
+    double sum = 0;
+    for (int i = -radius; i <= radius; ++i) sum += std::exp(-0.5 * i * i / (sigma * sigma));
+    for (int i = -radius; i <= radius; ++i) {
+        kernel.push_back(static_cast<float>(std::exp(-0.5 * i * i / (sigma * sigma)) / sum));
+    }
+    return kernel;
+}
+
+}  // namespace
+
+float pixel_noise(std::uint64_t seed, std::uint64_t frame, std::uint64_t pixel, std::uint64_t stream) {
+    return normal_of(frame_key(seed, frame, stream), pixel);
+}
+
+void add_quantum_noise(ImageF& photons, std::uint64_t seed, std::uint64_t frame, const Workers& workers) {
+    const std::uint64_t key = frame_key(seed, frame, 0);
+    const auto width = static_cast<std::size_t>(photons.width);
+    for_rows(photons, workers, [&](std::size_t y) {
+        float* row = photons.values.data() + y * width;
+        for (std::size_t x = 0; x < width; ++x) {
+            const float n = row[x] + std::sqrt(row[x]) * normal_of(key, y * width + x);
+            row[x] = n > 0.0F ? n : 0.0F;
+        }
+    });
+}
+
+void add_electronic_noise(ImageF& photons, double sigma, std::uint64_t seed, std::uint64_t frame,
+                          const Workers& workers) {
+    if (sigma <= 0) return;
+    const std::uint64_t key = frame_key(seed, frame, 1);
+    const auto s = static_cast<float>(sigma);
+    const auto width = static_cast<std::size_t>(photons.width);
+    for_rows(photons, workers, [&](std::size_t y) {
+        float* row = photons.values.data() + y * width;
+        for (std::size_t x = 0; x < width; ++x) row[x] += s * normal_of(key, y * width + x);
+    });
+}
+
+void blur(ImageF& image, double sigma_px, const Workers& workers) {
+    if (sigma_px < 0.15) return;
+    const std::vector<float> kernel = gaussian(sigma_px);
+    const auto taps = kernel.size();
+    const auto radius = taps / 2;
+    const auto width = static_cast<std::size_t>(image.width);
+    const auto height = static_cast<std::size_t>(image.height);
+    ImageF across(image.width, image.height);
+    for_rows(image, workers, [&](std::size_t y) {
+        std::vector<float> padded(width + 2 * radius);
+        const float* row = image.values.data() + y * width;
+        std::copy(row, row + width, padded.begin() + static_cast<std::ptrdiff_t>(radius));
+        std::fill_n(padded.begin(), radius, row[0]);
+        std::fill_n(padded.end() - static_cast<std::ptrdiff_t>(radius), radius, row[width - 1]);
+        float* out = across.values.data() + y * width;
+        std::fill_n(out, width, 0.0F);
+        for (std::size_t k = 0; k < taps; ++k) {
+            const float weight = kernel[k];
+            const float* in = padded.data() + k;
+            for (std::size_t x = 0; x < width; ++x) out[x] += weight * in[x];
+        }
+    });
+    for_rows(image, workers, [&](std::size_t y) {
+        float* out = image.values.data() + y * width;
+        std::fill_n(out, width, 0.0F);
+        for (std::size_t k = 0; k < taps; ++k) {
+            const std::size_t from = std::min(height - 1, y + k > radius ? y + k - radius : 0);
+            const float weight = kernel[k];
+            const float* in = across.values.data() + from * width;
+            for (std::size_t x = 0; x < width; ++x) out[x] += weight * in[x];
+        }
+    });
+}
+
+void recurse(ImageF& history, const ImageF& x, double b, const Workers& workers) {
+    CATHLAB_CHECK(b >= 0 && b < 1, "recursion factor out of [0, 1)");
+    if (history.width != x.width || history.height != x.height) {
+        history = x;
+        return;
+    }
+    const auto keep = static_cast<float>(b);
+    const auto width = static_cast<std::size_t>(x.width);
+    for_rows(x, workers, [&](std::size_t y) {
+        float* old = history.values.data() + y * width;
+        const float* now = x.values.data() + y * width;
+        for (std::size_t i = 0; i < width; ++i) old[i] = now[i] + keep * (old[i] - now[i]);
+    });
+}
+
+ImageF wide_blur(const ImageF& image, double sigma_px) {
+    // Means over blocks of a fifth of sigma, a Gaussian on those, and bilinear interpolation back.
+    const int block = std::max(1, static_cast<int>(sigma_px / 5));
+    ImageF coarse((image.width + block - 1) / block, (image.height + block - 1) / block);
+    for (int cy = 0; cy < coarse.height; ++cy) {
+        for (int cx = 0; cx < coarse.width; ++cx) {
+            double sum = 0;
+            int count = 0;
+            for (int y = cy * block; y < std::min(image.height, (cy + 1) * block); ++y) {
+                for (int x = cx * block; x < std::min(image.width, (cx + 1) * block); ++x, ++count)
+                    sum += image.at(x, y);
+            }
+            coarse.values[coarse.offset(cx, cy)] = static_cast<float>(sum / count);
+        }
+    }
+    blur(coarse, sigma_px / block, Workers());
+    ImageF out(image.width, image.height);
+    for (int y = 0; y < image.height; ++y) {
+        const double fy = std::clamp((y + 0.5) / block - 0.5, 0.0, coarse.height - 1.0);
+        const int y0 = std::min(static_cast<int>(fy), std::max(0, coarse.height - 2));
+        const int y1 = std::min(y0 + 1, coarse.height - 1);
+        const auto ty = static_cast<float>(fy - y0);
+        for (int x = 0; x < image.width; ++x) {
+            const double fx = std::clamp((x + 0.5) / block - 0.5, 0.0, coarse.width - 1.0);
+            const int x0 = std::min(static_cast<int>(fx), std::max(0, coarse.width - 2));
+            const int x1 = std::min(x0 + 1, coarse.width - 1);
+            const auto tx = static_cast<float>(fx - x0);
+            const float top = coarse.at(x0, y0) + tx * (coarse.at(x1, y0) - coarse.at(x0, y0));
+            const float low = coarse.at(x0, y1) + tx * (coarse.at(x1, y1) - coarse.at(x0, y1));
+            out.values[out.offset(x, y)] = top + ty * (low - top);
+        }
+    }
+    return out;
+}
+
+}  // namespace cathlab

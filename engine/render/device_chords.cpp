@@ -1,0 +1,204 @@
+#include "render/device_chords.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/check.h"
+
+namespace cathlab {
+
+namespace {
+
+struct Span {
+    double from = 0, to = -1;
+    double length() const { return to > from ? to - from : 0.0; }
+};
+
+// Line inside the infinite cylinder of radius r around the line through a along axis.
+Span cylinder_span(const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& axis, double r) {
+    const Vec3 d = direction - direction.dot(axis) * axis;
+    const Vec3 rel = origin - a;
+    const Vec3 o = rel - rel.dot(axis) * axis;
+    const double dd = d.squaredNorm();
+    if (dd < 1e-14) {  // along the axis: inside all the way or not at all
+        constexpr double far = 1e9;
+        return o.squaredNorm() <= r * r ? Span{-far, far} : Span{};
+    }
+    const double middle = -o.dot(d) / dd;
+    const double disc = r * r - (o + middle * d).squaredNorm();
+    if (disc <= 0) return {};
+    const double half = std::sqrt(disc / dd);
+    return {middle - half, middle + half};
+}
+
+// Keeps the part of the span with (p - point) . normal <= 0.
+void cut(Span& span, const Vec3& origin, const Vec3& direction, const Vec3& point, const Vec3& normal) {
+    const double slope = direction.dot(normal);
+    const double height = (origin - point).dot(normal);
+    if (std::fabs(slope) < 1e-12) {
+        if (height > 0) span = {};
+    } else if (slope > 0) {
+        span.to = std::min(span.to, -height / slope);
+    } else {
+        span.from = std::max(span.from, -height / slope);
+    }
+}
+
+double half_ball(const Vec3& origin, const Vec3& direction, const Vec3& center, const Vec3& outward, double r) {
+    const Vec3 rel = origin - center;
+    const double middle = -rel.dot(direction);
+    const double disc = r * r - (rel + middle * direction).squaredNorm();
+    if (disc <= 0) return 0;
+    const double half = std::sqrt(disc);
+    Span span{middle - half, middle + half};
+    cut(span, origin, direction, center, -outward);
+    return span.length();
+}
+
+double solid_chord(const ChordPiece& p, const Vec3& axis, const Vec3& origin, const Vec3& direction, double radius) {
+    Span span = cylinder_span(origin, direction, p.a, axis, radius);
+    if (span.to > span.from) {
+        cut(span, origin, direction, p.a, p.plane_a);
+        cut(span, origin, direction, p.b, p.plane_b);
+    }
+    double sum = span.length();
+    if (p.ball_a) sum += half_ball(origin, direction, p.a, p.plane_a, radius);
+    if (p.ball_b) sum += half_ball(origin, direction, p.b, p.plane_b, radius);
+    return sum;
+}
+
+struct Box {
+    int x0, x1, y0, y1;  // half open
+};
+
+Box pixel_box(const ChordPiece& p, const Projection& projection) {
+    double x0 = std::numeric_limits<double>::infinity(), y0 = x0, x1 = -x0, y1 = -x0;
+    for (const auto& [end, plane] : {std::pair(p.a, p.plane_a), std::pair(p.b, p.plane_b)}) {
+        // The mitre reaches r / cos(half the bend) from the axis.
+        const Vec3 axis = (p.b - p.a).normalized();
+        const double lean = std::max(0.2, std::fabs(plane.dot(axis)));
+        const double reach = p.radius / lean;
+        const double depth = projection.depth(end) - reach;
+        if (depth < 1.0) return {0, 0, 0, 0};
+        const double reach_px = 1.05 * reach * projection.source_detector_mm() / depth / projection.pixel_mm() + 1.0;
+        const Vec2 at = projection.pixel(end);
+        x0 = std::min(x0, at.x() - reach_px);
+        x1 = std::max(x1, at.x() + reach_px);
+        y0 = std::min(y0, at.y() - reach_px);
+        y1 = std::max(y1, at.y() + reach_px);
+    }
+    const auto inside = [](double v, int limit) {
+        return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(limit)));
+    };
+    return {inside(std::floor(x0), projection.width()), inside(std::ceil(x1), projection.width()),
+            inside(std::floor(y0), projection.height()), inside(std::ceil(y1), projection.height())};
+}
+
+}  // namespace
+
+void append_pieces(const FrameDevice& device, const std::vector<std::uint8_t>& medium_of,
+                   std::vector<ChordPiece>& out) {
+    const std::size_t n = device.radius_mm.size();
+    CATHLAB_CHECK(device.points.size() == n + 1 || n == 0, "a device of n pieces has n + 1 points");
+    CATHLAB_CHECK(device.inner_radius_mm.empty() || device.inner_radius_mm.size() == n, "one bore a piece");
+    CATHLAB_CHECK(device.material_of.size() == n, "one material a piece");
+    const std::size_t first = out.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec3 along = device.points[i + 1] - device.points[i];
+        if (!(along.norm() > 1e-6)) continue;
+        ChordPiece piece;
+        piece.a = device.points[i];
+        piece.b = device.points[i + 1];
+        piece.plane_b = along.normalized();
+        piece.plane_a = -piece.plane_b;
+        piece.radius = device.radius_mm[i];
+        piece.bore = device.inner_radius_mm.empty() ? 0.0 : device.inner_radius_mm[i];
+        CATHLAB_CHECK(device.material_of[i] < medium_of.size(), "material index out of range");
+        piece.medium = medium_of[device.material_of[i]];
+        out.push_back(piece);
+    }
+    if (out.size() == first) return;
+    for (std::size_t i = first; i + 1 < out.size(); ++i) {
+        const Vec3 bisector = (out[i].plane_b - out[i + 1].plane_a).normalized();
+        if (bisector.allFinite() && bisector.dot(out[i].plane_b) > 0.2) {  // a sharper kink keeps its flat ends
+            out[i].plane_b = bisector;
+            out[i + 1].plane_a = -bisector;
+        }
+    }
+    out[first].ball_a = out[first].bore <= 0.0;
+    out.back().ball_b = out.back().bore <= 0.0;
+}
+
+double chord(const ChordPiece& piece, const Vec3& origin, const Vec3& direction) {
+    const Vec3 axis = (piece.b - piece.a).normalized();
+    const double outer = solid_chord(piece, axis, origin, direction, piece.radius);
+    if (piece.bore <= 0.0 || outer <= 0.0) return outer;
+    return outer - solid_chord(piece, axis, origin, direction, piece.bore);
+}
+
+void draw_devices(const std::vector<ChordPiece>& pieces, int media, const Projection& projection, int samples,
+                  const Workers& workers, DeviceLengths& out) {
+    CATHLAB_CHECK(samples >= 1 && media >= 0, "samples and media must be positive");
+    const int height = projection.height();
+    const std::size_t width = static_cast<std::size_t>(projection.width());
+    std::vector<Box> boxes;
+    std::vector<std::vector<std::uint32_t>> pieces_of_row(static_cast<std::size_t>(height));
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        boxes.push_back(pixel_box(pieces[i], projection));
+        if (boxes[i].x0 >= boxes[i].x1) continue;
+        for (int y = boxes[i].y0; y < boxes[i].y1; ++y) {
+            pieces_of_row[static_cast<std::size_t>(y)].push_back(static_cast<std::uint32_t>(i));
+        }
+    }
+
+    struct Row {
+        std::vector<std::uint32_t> x;
+        std::vector<float> length;
+    };
+    std::vector<Row> rows(static_cast<std::size_t>(height));
+    const auto per_pixel = static_cast<std::size_t>(media);
+    const double share = 1.0 / (samples * samples);
+    workers.for_ranges(rows.size(), 8, [&](std::size_t begin, std::size_t end) {
+        std::vector<double> sums(width * per_pixel);
+        std::vector<std::uint8_t> touched(width);
+        for (std::size_t y = begin; y < end; ++y) {
+            if (pieces_of_row[y].empty()) continue;
+            std::fill(sums.begin(), sums.end(), 0.0);
+            std::fill(touched.begin(), touched.end(), std::uint8_t{0});
+            for (const std::uint32_t i : pieces_of_row[y]) {
+                const ChordPiece& piece = pieces[i];
+                // Pixels of this row whose rays can come near the piece's axis.
+                for (int x = boxes[i].x0; x < boxes[i].x1; ++x) {
+                    double sum = 0;
+                    for (int s = 0; s < samples * samples; ++s) {
+                        const double px = x + (s % samples + 0.5) / samples;
+                        const double py = static_cast<double>(y) + (s / samples + 0.5) / samples;
+                        sum += chord(piece, projection.source(), projection.ray(px, py));
+                    }
+                    if (sum <= 0) continue;
+                    const auto column = static_cast<std::size_t>(x);
+                    sums[column * per_pixel + piece.medium] += sum * share;
+                    touched[column] = 1;
+                }
+            }
+            for (std::size_t x = 0; x < width; ++x) {
+                if (touched[x] == 0) continue;
+                rows[y].x.push_back(static_cast<std::uint32_t>(x));
+                for (std::size_t m = 0; m < per_pixel; ++m) {
+                    rows[y].length.push_back(static_cast<float>(sums[x * per_pixel + m]));
+                }
+            }
+        }
+    });
+
+    out.media = media;
+    out.pixel.clear();
+    out.length_mm.clear();
+    for (std::size_t y = 0; y < rows.size(); ++y) {
+        for (const std::uint32_t x : rows[y].x) out.pixel.push_back(static_cast<std::uint32_t>(y * width) + x);
+        out.length_mm.insert(out.length_mm.end(), rows[y].length.begin(), rows[y].length.end());
+    }
+}
+
+}  // namespace cathlab

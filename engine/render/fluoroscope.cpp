@@ -1,0 +1,403 @@
+#include "render/fluoroscope.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "core/check.h"
+#include "core/errors.h"
+#include "core/mesh.h"
+#include "render/attenuation.h"
+#include "render/detector.h"
+#include "render/device_chords.h"
+#include "render/fast_math.h"
+#include "render/gl_device.h"
+#include "render/path_lengths.h"
+#include "render/path_surface.h"
+#include "render/projection.h"
+
+namespace cathlab {
+
+namespace {
+
+constexpr int device_samples = 3;             // rays a side and pixel: a wire is about one pixel wide
+constexpr double photons_per_mm2_ngy = 33.0;  // detected, behind a patient, 60 to 120 kV
+constexpr double scatter_sigma_mm = 40.0;     // width of the scatter kernel at the detector
+constexpr double usual_magnification = 1.45;  // SID / SOD of C-arms: 1.4 to 1.5
+constexpr double harmonisation_sigma_mm = 25.0;
+
+// mu of what is drawn minus mu of what it displaces: exponents are linear, so nested media need no boolean operations.
+BinValues difference(const BeamTable& beam, const std::string& inside, const std::string& outside) {
+    BinValues mu = beam.attenuation(inside);
+    const BinValues other = beam.attenuation(outside);
+    for (std::size_t k = 0; k < energy_bins; ++k) mu[k] -= other[k];
+    return mu;
+}
+
+struct ViewKey {
+    std::vector<double> numbers;
+    bool operator==(const ViewKey&) const = default;
+};
+
+void append(ViewKey& key, const Vec3& v) {
+    key.numbers.insert(key.numbers.end(), v.data(), v.data() + 3);
+}
+
+ViewKey view_key(const FrameDescription& f, int width, int height) {
+    ViewKey key;
+    for (const Vec3& v : {f.view.source, f.view.detector_center, f.view.right, f.view.down}) append(key, v);
+    key.numbers.insert(key.numbers.end(), {f.view.width_mm, f.view.height_mm, double(width), double(height)});
+    return key;
+}
+
+ViewKey context_key(const FrameDescription& f, int width, int height) {
+    ViewKey key = view_key(f, width, height);
+    key.numbers.insert(key.numbers.end(), {f.exposure.kvp, f.exposure.copper_mm, f.exposure.scatter_to_primary,
+                                           f.exposure.measuring_field, double(f.solids_revision)});
+    for (const FrameSolid& solid : f.solids) {
+        if (solid.moving) continue;
+        append(key, solid.pose.position);
+        const auto& q = solid.pose.orientation.coeffs();
+        key.numbers.insert(key.numbers.end(), q.data(), q.data() + 4);
+    }
+    return key;
+}
+
+}  // namespace
+
+struct Fluoroscope::Impl {
+    Impl(GlDevicePtr device, Workers w) : workers(std::move(w)), buffer(std::move(device)) {}
+
+    Workers workers;
+    PathLengthBuffer buffer;
+    std::unique_ptr<BeamTable> beam;
+    double beam_kvp = 0, beam_copper = -1;
+
+    // One GL surface a solid, lumen and outer wall.
+    std::vector<std::unique_ptr<PathSurface>> solid_surfaces;
+    std::uint64_t solids_revision = 0;
+    bool solids_known = false;
+    std::unique_ptr<PathSurface> lumen, wall;
+    std::uint64_t lumen_revision = 0;
+    std::size_t lumen_triangles = 0;
+
+    // The context of the present view.
+    ViewKey context, view;
+    std::vector<BinValues> transmission;  // a pixel: weight * exp(-E) of each bin, geometry factor included
+    ImageF context_intensity, scatter, coarse_log;
+    double reference = 1, coarse_mean = 0, photons_of_kerma = 1;
+    std::size_t context_bad = 0, bad = 0;
+
+    // One frame.
+    PathLengths lengths;
+    DeviceLengths devices;
+    std::vector<ChordPiece> pieces;
+    std::vector<BinValues> device_mu;
+    std::vector<std::pair<ImageF, BinValues>> moving;
+    ImageF intensity, signal, history, log_image;
+    std::vector<std::uint8_t> grey;
+
+    void use_beam(const FrameExposure& e) {
+        if (beam && beam_kvp == e.kvp && beam_copper == e.copper_mm) return;
+        beam = std::make_unique<BeamTable>(e.kvp, e.copper_mm);
+        beam_kvp = e.kvp;
+        beam_copper = e.copper_mm;
+    }
+
+    void upload_solid(const FrameSolid& solid, PathSurface& surface) {
+        std::vector<Vec3> world;
+        world.reserve(solid.mesh.vertices.size());
+        for (const Vec3& p : solid.mesh.vertices) world.push_back(solid.pose.to_world(p));
+        buffer.set_vertices(surface, world, {});
+    }
+
+    void upload_solids(const FrameDescription& f) {
+        if (solids_known && solids_revision == f.solids_revision && solid_surfaces.size() == f.solids.size()) return;
+        solid_surfaces.clear();
+        for (const FrameSolid& solid : f.solids) {
+            solid_surfaces.push_back(buffer.make_surface());
+            buffer.set_triangles(*solid_surfaces.back(), solid.mesh.triangles);
+        }
+        solids_revision = f.solids_revision;
+        solids_known = true;
+    }
+
+    // Solids of equal material in equal surroundings share one pass.
+    using Groups = std::map<std::pair<std::string, std::string>, std::vector<const PathSurface*>>;
+    Groups groups_of(const FrameDescription& f, bool moving_ones) {
+        Groups groups;
+        for (std::size_t i = 0; i < f.solids.size(); ++i) {
+            if (f.solids[i].moving != moving_ones || f.solids[i].mesh.empty()) continue;
+            upload_solid(f.solids[i], *solid_surfaces[i]);
+            groups[{f.solids[i].material, f.solids[i].surrounding}].push_back(solid_surfaces[i].get());
+        }
+        return groups;
+    }
+
+    void make_context(const FrameDescription& f, const Projection& projection);
+    void draw_moving(const FrameDescription& f, const Projection& projection);
+    void draw_lumen(const FrameDescription& f, const Projection& projection);
+    void draw_all_devices(const FrameDescription& f, const Projection& projection);
+    void combine();
+    void detect(const FrameDescription& f, const Projection& projection);
+    void display(const FrameExposure& e);
+    float at_pixel(std::size_t i, const float* device_length) const;
+};
+
+void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection& projection) {
+    const auto count = static_cast<std::size_t>(projection.width()) * static_cast<std::size_t>(projection.height());
+    std::vector<BinValues> exponent(count, BinValues{});
+    context_bad = 0;
+    for (const auto& [media, surfaces] : groups_of(f, false)) {
+        const BinValues mu = difference(*beam, media.first, media.second);
+        buffer.draw(projection, surfaces, lengths);
+        context_bad += lengths.bad_pixels;
+        workers.for_ranges(count, 8192, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const float length = lengths.length_mm.values[i];
+                for (std::size_t k = 0; k < energy_bins; ++k) exponent[i][k] += mu[k] * length;
+            }
+        });
+    }
+    const int width = projection.width();
+    transmission.resize(count);
+    context_intensity = ImageF(width, projection.height());
+    workers.for_ranges(count, 8192, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            // Inverse square and obliquity together: cos^3 of the angle to the detector's normal.
+            const double x = static_cast<double>(i % static_cast<std::size_t>(width)) + 0.5;
+            const double y = static_cast<double>(i / static_cast<std::size_t>(width)) + 0.5;
+            const double cosine = projection.ray(x, y).dot(projection.normal());
+            const auto geometry = static_cast<float>(cosine * cosine * cosine);
+            float sum = 0;
+            for (std::size_t k = 0; k < energy_bins; ++k) {
+                transmission[i][k] = geometry * beam->weights()[k] * fast_exp(-exponent[i][k]);
+                sum += transmission[i][k];
+            }
+            context_intensity.values[i] = sum;
+        }
+    });
+    scatter = wide_blur(context_intensity, scatter_sigma_mm / projection.pixel_mm());
+    for (float& s : scatter.values) s *= static_cast<float>(f.exposure.scatter_to_primary);
+
+    // The measuring field holds the detector's kerma; a coarse picture of the logarithm evens out lung and spine.
+    const double side = std::clamp(f.exposure.measuring_field, 0.05, 1.0);
+    const auto inside = [&](int v, int n) { return std::fabs((v + 0.5) / n - 0.5) <= 0.5 * side; };
+    double sum = 0;
+    std::size_t pixels = 0;
+    ImageF logs(width, projection.height());
+    for (int y = 0; y < projection.height(); ++y) {
+        for (int x = 0; x < width; ++x) {
+            const std::size_t i = logs.offset(x, y);
+            const float total = std::max(1e-12F, context_intensity.values[i] + scatter.values[i]);
+            logs.values[i] = fast_log(total);
+            if (inside(y, projection.height()) && inside(x, width)) {
+                sum += total;
+                ++pixels;
+            }
+        }
+    }
+    reference = sum / static_cast<double>(pixels);
+    coarse_log = wide_blur(logs, harmonisation_sigma_mm / projection.pixel_mm());
+    coarse_mean = std::log(reference);
+}
+
+void Fluoroscope::Impl::draw_moving(const FrameDescription& f, const Projection& projection) {
+    moving.clear();
+    for (const auto& [media, surfaces] : groups_of(f, true)) {
+        buffer.draw(projection, surfaces, lengths);
+        bad += lengths.bad_pixels;
+        moving.emplace_back(lengths.length_mm, difference(*beam, media.first, media.second));
+    }
+}
+
+void Fluoroscope::Impl::draw_lumen(const FrameDescription& f, const Projection& projection) {
+    if (f.lumen.triangles.empty()) return;
+    const bool fresh =
+        !lumen || lumen_revision != f.lumen.topology_revision || lumen_triangles != f.lumen.triangles.size();
+    if (fresh) {
+        lumen = buffer.make_surface();
+        wall = buffer.make_surface();
+        buffer.set_triangles(*lumen, f.lumen.triangles);
+        buffer.set_triangles(*wall, f.lumen.triangles);
+        lumen_revision = f.lumen.topology_revision;
+        lumen_triangles = f.lumen.triangles.size();
+    }
+    const bool has_wall = !f.lumen.wall_material.empty() && !f.lumen.wall_mm.empty();
+    const std::string& around = has_wall ? f.lumen.wall_material : f.lumen.surrounding;
+    buffer.set_vertices(*lumen, f.lumen.vertices, f.lumen.contrast_mg_ml);
+    buffer.draw(projection, {lumen.get()}, lengths);
+    bad += lengths.bad_pixels;
+    moving.emplace_back(lengths.length_mm, difference(*beam, f.lumen.material, around));
+    if (!lengths.contrast_mm_mg_ml.values.empty()) {
+        moving.emplace_back(lengths.contrast_mm_mg_ml, beam->iodine());
+    }
+    if (!has_wall) return;
+    const std::size_t n = f.lumen.vertices.size();
+    CATHLAB_CHECK(f.lumen.wall_mm.size() == n, "one wall thickness a vertex");
+    const std::vector<Vec3> normals =
+        f.lumen.normals.size() == n ? f.lumen.normals : vertex_normals({f.lumen.vertices, f.lumen.triangles});
+    std::vector<Vec3> outer(n);
+    for (std::size_t i = 0; i < n; ++i) outer[i] = f.lumen.vertices[i] + f.lumen.wall_mm[i] * normals[i];
+    buffer.set_vertices(*wall, outer, {});
+    buffer.draw(projection, {wall.get()}, lengths);
+    bad += lengths.bad_pixels;
+    moving.emplace_back(lengths.length_mm, difference(*beam, f.lumen.wall_material, f.lumen.surrounding));
+}
+
+void Fluoroscope::Impl::draw_all_devices(const FrameDescription& f, const Projection& projection) {
+    pieces.clear();
+    device_mu.clear();
+    std::map<std::pair<std::string, std::string>, std::uint8_t> media;
+    for (const FrameDevice& device : f.devices) {
+        std::vector<std::uint8_t> medium_of;
+        for (const std::string& material : device.materials) {
+            const auto [entry, is_new] =
+                media.emplace(std::pair(material, device.surrounding), static_cast<std::uint8_t>(media.size()));
+            if (is_new) device_mu.push_back(difference(*beam, material, device.surrounding));
+            medium_of.push_back(entry->second);
+        }
+        append_pieces(device, medium_of, pieces);
+    }
+    draw_devices(pieces, static_cast<int>(device_mu.size()), projection, device_samples, workers, devices);
+}
+
+float Fluoroscope::Impl::at_pixel(std::size_t i, const float* device_length) const {
+    BinValues exponent{};
+    for (const auto& [length, mu] : moving) {
+        const float l = length.values[i];
+        for (std::size_t k = 0; k < energy_bins; ++k) exponent[k] += mu[k] * l;
+    }
+    if (device_length != nullptr) {
+        for (std::size_t m = 0; m < device_mu.size(); ++m) {
+            for (std::size_t k = 0; k < energy_bins; ++k) exponent[k] += device_mu[m][k] * device_length[m];
+        }
+    }
+    float sum = 0;
+    for (std::size_t k = 0; k < energy_bins; ++k) sum += transmission[i][k] * fast_exp(-exponent[k]);
+    return sum;
+}
+
+void Fluoroscope::Impl::combine() {
+    const std::size_t count = context_intensity.values.size();
+    intensity.width = context_intensity.width;
+    intensity.height = context_intensity.height;
+    intensity.values.resize(count);
+    workers.for_ranges(count, 8192, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            bool touched = false;
+            for (const auto& [length, mu] : moving) touched = touched || length.values[i] != 0.0F;
+            intensity.values[i] = (touched ? at_pixel(i, nullptr) : context_intensity.values[i]) + scatter.values[i];
+        }
+    });
+    const auto media = static_cast<std::size_t>(devices.media);
+    workers.for_ranges(devices.pixel.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t d = begin; d < end; ++d) {
+            const std::size_t i = devices.pixel[d];
+            intensity.values[i] = at_pixel(i, devices.length_mm.data() + d * media) + scatter.values[i];
+        }
+    });
+}
+
+void Fluoroscope::Impl::detect(const FrameDescription& f, const Projection& projection) {
+    const FrameExposure& e = f.exposure;
+    const double area = projection.pixel_mm() * projection.pixel_mm();
+    const double kerma = e.open_field_kerma_ngy > 0 ? e.open_field_kerma_ngy : e.detector_kerma_ngy / reference;
+    const double photons = kerma * photons_per_mm2_ngy * area;
+    photons_of_kerma = e.detector_kerma_ngy * photons_per_mm2_ngy * area;
+    signal = intensity;
+    const double magnified = (usual_magnification - 1) * e.focal_spot_mm;
+    blur(signal, 0.29 * magnified / projection.pixel_mm(), workers);  // 0.29 = sigma of a unit box
+    const auto gain = static_cast<float>(photons);
+    workers.for_ranges(signal.values.size(), 16384, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) signal.values[i] *= gain;
+    });
+    add_quantum_noise(signal, f.seed, f.frame_index, workers);
+    blur(signal, e.blur_sigma_mm / projection.pixel_mm(), workers);
+    add_electronic_noise(signal, e.electronic_noise_photons, f.seed, f.frame_index, workers);
+    recurse(history, signal, e.recursion, workers);
+}
+
+void Fluoroscope::Impl::display(const FrameExposure& e) {
+    const int width = history.width, height = history.height;
+    const auto columns = static_cast<std::size_t>(width);
+    log_image.width = width;
+    log_image.height = height;
+    log_image.values.resize(history.values.size());
+    const auto mean = static_cast<float>(coarse_mean);
+    const auto even = static_cast<float>(e.harmonisation);
+    // The wanted kerma is grey `level`.
+    const auto unit = static_cast<float>(1.0 / photons_of_kerma);
+    workers.for_ranges(static_cast<std::size_t>(height), 32, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin * columns; i < end * columns; ++i) {
+            const float relative = std::max(0.004F, history.values[i] * unit);
+            log_image.values[i] = fast_log(relative) - even * (coarse_log.values[i] - mean);
+        }
+    });
+    const auto edge = static_cast<float>(0.25 * e.edge_enhancement);
+    const auto scale = static_cast<float>(255.0 / e.window);
+    const auto offset = static_cast<float>(255.0 * e.level);
+    grey.resize(history.values.size());
+    workers.for_ranges(static_cast<std::size_t>(height), 32, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t y = begin; y < end; ++y) {
+            const float* row = log_image.values.data() + y * columns;
+            const float* above = y > 0 ? row - columns : row;
+            const float* below = y + 1 < static_cast<std::size_t>(height) ? row + columns : row;
+            for (std::size_t x = 0; x < columns; ++x) {
+                const float left = row[x > 0 ? x - 1 : x];
+                const float right = row[x + 1 < columns ? x + 1 : x];
+                const float sharp = row[x] + edge * (4.0F * row[x] - left - right - above[x] - below[x]);
+                const float value = offset + scale * sharp + 0.5F;
+                grey[y * columns + x] =
+                    static_cast<std::uint8_t>(value < 0.0F ? 0.0F : (value > 255.0F ? 255.0F : value));
+            }
+        }
+    });
+}
+
+Fluoroscope::Fluoroscope(std::shared_ptr<GlDevice> device, Workers workers)
+    : impl_(std::make_unique<Impl>(std::move(device), std::move(workers))) {}
+Fluoroscope::~Fluoroscope() = default;
+
+const std::vector<std::uint8_t>& Fluoroscope::draw(const FrameDescription& frame, int width, int height) {
+    Impl& self = *impl_;
+    const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    if (!frame.beam_on) {  // last image hold; black before the first exposure
+        self.grey.resize(count, 0);
+        return self.grey;
+    }
+    const Projection projection(frame.view, width, height);
+    self.use_beam(frame.exposure);
+    self.upload_solids(frame);
+    ViewKey view = view_key(frame, width, height);
+    if (!(view == self.view)) self.history = {};
+    self.view = std::move(view);
+    ViewKey context = context_key(frame, width, height);
+    if (!(context == self.context)) {
+        self.make_context(frame, projection);
+        self.context = std::move(context);
+    }
+    self.bad = self.context_bad;
+    self.draw_moving(frame, projection);
+    self.draw_lumen(frame, projection);
+    self.draw_all_devices(frame, projection);
+    self.combine();
+    self.detect(frame, projection);
+    self.display(frame.exposure);
+    return self.grey;
+}
+
+const ImageF& Fluoroscope::intensity() const {
+    return impl_->intensity;
+}
+std::size_t Fluoroscope::bad_pixels() const {
+    return impl_->bad;
+}
+void Fluoroscope::reset() {
+    impl_->history = {};
+    impl_->context = {};
+    impl_->solids_known = false;
+}
+
+}  // namespace cathlab

@@ -1,0 +1,39 @@
+// The X-ray picture: path lengths -> polychromatic Beer-Lambert -> noise -> blur -> recursion -> grey.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/parallel.h"
+#include "imaging/image.h"
+#include "render/frame_description.h"
+
+namespace cathlab {
+
+class GlDevice;
+
+/// State between frames: the cached context (torso) of the present view, and the temporal filter's memory, which
+/// restarts when the C-arm moves.  The picture is a function of the descriptions drawn since then.
+class Fluoroscope {
+public:
+    Fluoroscope(std::shared_ptr<GlDevice> device, Workers workers);
+    ~Fluoroscope();
+
+    /// Grey, one byte a pixel, rows from the top, devices dark on light.  Throws UserError on an impossible geometry or
+    /// an unknown material.
+    const std::vector<std::uint8_t>& draw(const FrameDescription& frame, int width, int height);
+
+    /// Intensity of the last frame before noise and blur, relative to the beam without a patient (scatter included).
+    const ImageF& intensity() const;
+    /// Rays of the last frame whose entries and exits do not match (open surfaces); must be 0.
+    std::size_t bad_pixels() const;
+    /// Brings the next frame to a fresh start (a new run).
+    void reset();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cathlab

@@ -1,0 +1,81 @@
+#include "render/frame_renderer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/errors.h"
+#include "render/fluoroscope.h"
+#include "render/gl_device.h"
+#include "render/inner_view.h"
+#include "render/overlay.h"
+
+namespace cathlab {
+
+FrameLayout layout_of(const FrameDescription& frame) {
+    FrameLayout layout;
+    const int w = frame.width, h = frame.height;
+    if (frame.show_fluoroscopy) {
+        const int side = frame.show_inner_view ? std::min(h, w / 2) : std::min(h, w);
+        layout.fluoroscopy = {frame.show_inner_view ? 0 : (w - side) / 2, (h - side) / 2, side, side};
+        if (frame.show_inner_view) layout.inner_view = {side, (h - side) / 2, w - side, side};
+    } else if (frame.show_inner_view) {
+        layout.inner_view = {0, 0, w, h};
+    }
+    return layout;
+}
+
+struct FrameRenderer::Impl {
+    Impl(std::unique_ptr<GlTarget> target, const Workers& workers)
+        : device(std::make_shared<GlDevice>(std::move(target))),
+          fluoroscope(device, workers),
+          inner_view(device),
+          overlay(device) {}
+    GlDevicePtr device;
+    Fluoroscope fluoroscope;
+    InnerView inner_view;
+    Overlay overlay;
+    Image8 part;
+};
+
+FrameRenderer::FrameRenderer(std::unique_ptr<GlTarget> target, Workers workers)
+    : impl_(std::make_unique<Impl>(std::move(target), workers)) {}
+FrameRenderer::~FrameRenderer() = default;
+
+void FrameRenderer::render(const FrameDescription& frame, Image8& out) {
+    if (frame.width < 64 || frame.height < 64 || frame.width > 8192 || frame.height > 8192) {
+        throw UserError("a picture of " + std::to_string(frame.width) + "x" + std::to_string(frame.height) +
+                        " cannot be drawn: width and height must lie in [64, 8192]");
+    }
+    if (out.width != frame.width || out.height != frame.height) out = Image8(frame.width, frame.height);
+    const FrameLayout layout = layout_of(frame);
+    std::fill(out.rgb.begin(), out.rgb.end(), std::uint8_t{0});
+    if (layout.fluoroscopy.width > 0) {
+        const FrameRect& r = layout.fluoroscopy;
+        const std::vector<std::uint8_t>& grey = impl_->fluoroscope.draw(frame, r.width, r.height);
+        for (int y = 0; y < r.height; ++y) {
+            std::uint8_t* row = out.rgb.data() + out.offset(r.x, r.y + y);
+            const std::uint8_t* from = grey.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(r.width);
+            for (int x = 0; x < r.width; ++x, row += 3) row[0] = row[1] = row[2] = from[x];
+        }
+    }
+    if (layout.inner_view.width > 0) {
+        impl_->inner_view.draw(frame, layout.inner_view.width, layout.inner_view.height, impl_->part);
+        paste(out, impl_->part, layout.inner_view.x, layout.inner_view.y);
+    }
+    impl_->overlay.draw(frame.overlay, out);
+}
+
+std::size_t FrameRenderer::bad_pixels() const {
+    return impl_->fluoroscope.bad_pixels();
+}
+const ImageF& FrameRenderer::intensity() const {
+    return impl_->fluoroscope.intensity();
+}
+void FrameRenderer::reset() {
+    impl_->fluoroscope.reset();
+}
+std::string FrameRenderer::description() const {
+    return impl_->device->description();
+}
+
+}  // namespace cathlab

@@ -1,0 +1,50 @@
+// One description of a frame -> one picture: fluoroscopy left, inner view right, HUD over both.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "core/parallel.h"
+#include "imaging/image.h"
+#include "render/frame_description.h"
+#include "render/gl_target.h"
+
+namespace cathlab {
+
+/// A part of the picture, pixels from the top left.
+struct FrameRect {
+    int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// Where the parts of a picture stand.  Both views: the fluoroscopy takes a square at the left, the inner view the
+/// rest; one view: the largest centred square (fluoroscopy) or everything (inner view).
+struct FrameLayout {
+    FrameRect fluoroscopy, inner_view;
+};
+FrameLayout layout_of(const FrameDescription& frame);
+
+/// Draws off-screen.  Use one renderer from one thread at a time; parallel rendering means processes.
+class FrameRenderer {
+public:
+    /// Throws UserError where no off-screen GL can be had.
+    explicit FrameRenderer(std::unique_ptr<GlTarget> target, Workers workers = Workers());
+    ~FrameRenderer();
+
+    /// Makes out a picture of frame.width x frame.height (at least 64 x 64, at most 8192; else UserError).
+    void render(const FrameDescription& frame, Image8& out);
+
+    /// Rays of the last frame that found an open surface: must be 0.
+    std::size_t bad_pixels() const;
+    /// Linear intensity of the last frame's fluoroscopy, before noise.
+    const ImageF& intensity() const;
+    /// Forgets the last frames (temporal filter, held image): the start of another run.
+    void reset();
+    std::string description() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cathlab

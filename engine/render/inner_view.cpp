@@ -1,0 +1,191 @@
+#include "render/inner_view.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/check.h"
+#include "core/mesh.h"
+#include "core/units.h"
+#include "render/gl_device.h"
+#include "shader_sources.h"
+
+namespace cathlab {
+
+namespace {
+
+constexpr double near_mm = 0.15, far_mm = 400.0;  // the lens, and where no light comes back
+constexpr int tube_sides = 14;
+constexpr std::size_t floats_per_vertex = 13;
+
+// Perspective with z forward; row 0 of the picture is y = -height, so GL's up is our down.
+std::array<float, 16> clip_matrix(double field_of_view_deg, double aspect) {
+    const double f = 1.0 / std::tan(0.5 * field_of_view_deg * units::deg);
+    std::array<float, 16> m{};
+    m[0] = static_cast<float>(f / aspect);
+    m[5] = static_cast<float>(f);
+    m[10] = static_cast<float>((far_mm + near_mm) / (far_mm - near_mm));
+    m[14] = static_cast<float>(-2 * far_mm * near_mm / (far_mm - near_mm));
+    m[11] = 1.0F;
+    return m;
+}
+
+Vec3 wall_color(double force, double limit) {
+    const Vec3 tissue(0.62, 0.155, 0.115), yellow(0.95, 0.72, 0.10), alarm(0.80, 0.62, 1.0);
+    const double t = std::clamp(force / std::max(1e-9, limit), 0.0, 1.0);
+    return t < 0.5 ? Vec3(tissue + 2 * t * (yellow - tissue)) : Vec3(yellow + (2 * t - 1) * (alarm - yellow));
+}
+
+struct Batch {
+    std::vector<float> vertices;
+    std::vector<GLuint> indices;
+
+    GLuint add(const Vec3& position, const Vec3& normal, const Vec3& color, double gloss, const Vec3& grain) {
+        const auto id = static_cast<GLuint>(vertices.size() / floats_per_vertex);
+        const auto put = [&](const Vec3& v) {
+            for (int k = 0; k < 3; ++k) vertices.push_back(static_cast<float>(v[k]));
+        };
+        put(position);
+        put(normal);
+        put(color);
+        vertices.push_back(static_cast<float>(gloss));
+        put(grain);
+        return id;
+    }
+};
+
+void add_device(const FrameDevice& device, const Pose& camera, Batch& out) {
+    const std::size_t n = device.radius_mm.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec3 a = camera.to_local(device.points[i]);
+        const Vec3 b = camera.to_local(device.points[i + 1]);
+        const double r = device.radius_mm[i];
+        if (std::max(a.z(), b.z()) < near_mm || std::min(a.norm(), b.norm()) > 150) continue;
+        const Vec3 axis = b - a;
+        if (!(axis.norm() > 1e-6)) continue;
+        const Vec3 u = axis.unitOrthogonal();
+        const Vec3 v = axis.normalized().cross(u);
+        std::array<GLuint, 2 * tube_sides> ring{};
+        for (std::size_t s = 0; s < tube_sides; ++s) {
+            const double angle = 2 * units::pi * static_cast<double>(s) / tube_sides;
+            const Vec3 out_normal = std::cos(angle) * u + std::sin(angle) * v;
+            ring[2 * s] = out.add(a + r * out_normal, out_normal, device.color, 0.9, Vec3::Zero());
+            ring[2 * s + 1] = out.add(b + r * out_normal, out_normal, device.color, 0.9, Vec3::Zero());
+        }
+        for (std::size_t s = 0; s < tube_sides; ++s) {
+            const std::size_t t = (s + 1) % tube_sides;
+            out.indices.insert(out.indices.end(), {ring[2 * s], ring[2 * t], ring[2 * s + 1], ring[2 * s + 1],
+                                                   ring[2 * t], ring[2 * t + 1]});
+        }
+        if (i == 0 || i + 1 == n) {  // close the free end
+            const Vec3& end = i == 0 ? a : b;
+            const Vec3 normal = (i == 0 ? Vec3(-axis) : axis).normalized();
+            const GLuint middle = out.add(end + 0.5 * r * normal, normal, device.color, 0.9, Vec3::Zero());
+            const std::size_t side = i == 0 ? 0 : 1;
+            for (std::size_t s = 0; s < tube_sides; ++s) {
+                out.indices.insert(out.indices.end(),
+                                   {middle, ring[2 * s + side], ring[2 * ((s + 1) % tube_sides) + side]});
+            }
+        }
+    }
+}
+
+}  // namespace
+
+struct InnerView::Impl {
+    explicit Impl(GlDevicePtr d)
+        : device(std::move(d)),
+          program(device, shaders::tissue_vert, shaders::tissue_frag),
+          mesh(device, {3, 3, 4, 3}) {}
+    GlDevicePtr device;
+    GlProgram program;
+    GlMesh mesh;
+    std::unique_ptr<GlFramebuffer> buffer;
+    std::vector<std::uint8_t> rgba;
+    std::vector<Vec3> rest;  // where each vertex was first seen: the grain moves with the tissue
+    std::uint64_t rest_revision = 0;
+    Batch batch;
+
+    void fill(const FrameDescription& frame);
+};
+
+void InnerView::Impl::fill(const FrameDescription& frame) {
+    const FrameLumen& lumen = frame.lumen;
+    const Pose& camera = frame.inner_camera->pose;
+    const std::size_t n = lumen.vertices.size();
+    if (rest.size() != n || rest_revision != lumen.topology_revision) {
+        rest = lumen.vertices;
+        rest_revision = lumen.topology_revision;
+    }
+    batch.vertices.clear();
+    batch.indices.clear();
+    std::vector<Vec3> computed;
+    if (lumen.normals.size() != n) computed = vertex_normals({lumen.vertices, lumen.triangles});
+    const std::vector<Vec3>& normals = computed.empty() ? lumen.normals : computed;
+
+    // Only what the light reaches and what stands before the camera is sent to GL.
+    const double reach = std::min(far_mm, 5 * frame.inner_camera->light_range_mm);
+    std::vector<Vec3> local(n);
+    for (std::size_t i = 0; i < n; ++i) local[i] = camera.to_local(lumen.vertices[i]);
+    const auto seen = [&](const Vec3& p) { return p.z() > -5.0 && p.squaredNorm() < reach * reach; };
+    std::vector<std::int64_t> id(n, -1);
+    const Quat to_camera = camera.orientation.conjugate();
+    for (const Triangle& t : lumen.triangles) {
+        const auto a = static_cast<std::size_t>(t[0]), b = static_cast<std::size_t>(t[1]),
+                   c = static_cast<std::size_t>(t[2]);
+        if (!seen(local[a]) && !seen(local[b]) && !seen(local[c])) continue;
+        for (const std::size_t i : {a, b, c}) {
+            if (id[i] < 0) {
+                const double force = lumen.wall_force_n.size() == n ? lumen.wall_force_n[i] : 0.0;
+                id[i] = batch.add(local[i], to_camera * normals[i], wall_color(force, frame.wall_force_limit_n), 0.55,
+                                  rest[i]);
+            }
+            batch.indices.push_back(static_cast<GLuint>(id[i]));
+        }
+    }
+    for (const FrameDevice& d : frame.devices) add_device(d, camera, batch);
+}
+
+InnerView::InnerView(std::shared_ptr<GlDevice> device) : impl_(std::make_unique<Impl>(std::move(device))) {}
+InnerView::~InnerView() = default;
+
+void InnerView::draw(const FrameDescription& frame, int width, int height, Image8& out) {
+    out = Image8(width, height);
+    if (!frame.inner_camera) return;
+    const FrameCamera& camera = *frame.inner_camera;
+    CATHLAB_CHECK(camera.field_of_view_deg > 10 && camera.field_of_view_deg < 150, "field of view of the inner camera");
+    Impl& self = *impl_;
+    self.device->make_current();
+    self.fill(frame);
+
+    const GlTable& gl = self.device->gl();
+    if (!self.buffer || self.buffer->width() != width || self.buffer->height() != height) {
+        self.buffer = std::make_unique<GlFramebuffer>(self.device, width, height, std::vector<GLenum>{GL_RGBA8}, true);
+    }
+    self.buffer->bind();
+    gl.Disable(GL_BLEND);
+    gl.Disable(GL_CULL_FACE);
+    gl.Disable(GL_SCISSOR_TEST);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthMask(GL_TRUE);
+    gl.ClearColor(0, 0, 0, 1);
+    gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    self.program.use();
+    const auto matrix = clip_matrix(camera.field_of_view_deg, static_cast<double>(width) / height);
+    gl.UniformMatrix4fv(self.program.uniform("u_clip"), 1, GL_FALSE, matrix.data());
+    gl.Uniform1f(self.program.uniform("u_light_range"), static_cast<float>(camera.light_range_mm));
+    self.mesh.set_vertices(self.batch.vertices);
+    self.mesh.set_indices(self.batch.indices);
+    self.mesh.draw();
+
+    self.rgba.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
+    self.buffer->read(0, GL_RGBA, GL_UNSIGNED_BYTE, self.rgba.data());
+    self.device->check("inner view");
+    for (std::size_t i = 0; i < self.rgba.size() / 4; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) out.rgb[3 * i + k] = self.rgba[4 * i + k];
+    }
+}
+
+}  // namespace cathlab

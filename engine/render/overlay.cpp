@@ -1,0 +1,111 @@
+#include "render/overlay.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/check.h"
+#include "render/gl_device.h"
+#include "shader_sources.h"
+
+namespace cathlab {
+
+struct Overlay::Impl {
+    explicit Impl(GlDevicePtr d)
+        : device(std::move(d)),
+          program(device, shaders::overlay_vert, shaders::overlay_frag),
+          mesh(device, {2, 2, 4}) {}
+    ~Impl() {
+        device->make_current();
+        if (texture != 0) device->gl().DeleteTextures(1, &texture);
+    }
+
+    GlDevicePtr device;
+    GlProgram program;
+    GlMesh mesh;
+    std::unique_ptr<GlFramebuffer> buffer;
+    GLuint texture = 0;
+    std::shared_ptr<const DrawAtlas> atlas;  // the one in the texture
+    std::vector<float> vertices;
+    std::vector<std::uint8_t> rgba;
+
+    void use_atlas(const std::shared_ptr<const DrawAtlas>& wanted) {
+        const GlTable& gl = device->gl();
+        gl.ActiveTexture(GL_TEXTURE0);
+        if (texture == 0) gl.GenTextures(1, &texture);
+        gl.BindTexture(GL_TEXTURE_2D, texture);
+        if (atlas == wanted) return;
+        atlas = wanted;
+        gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+        gl.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, atlas->width, atlas->height, 0, GL_RED, GL_UNSIGNED_BYTE,
+                      atlas->alpha.data());
+        gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+        gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    }
+};
+
+Overlay::Overlay(std::shared_ptr<GlDevice> device) : impl_(std::make_unique<Impl>(std::move(device))) {}
+Overlay::~Overlay() = default;
+
+void Overlay::draw(const HudDrawList& list, Image8& picture) {
+    if (list.empty()) return;
+    CATHLAB_CHECK(list.atlas != nullptr, "a draw list needs its atlas");
+    CATHLAB_CHECK(std::lround(list.width) == picture.width && std::lround(list.height) == picture.height,
+                  "the HUD was laid out for another size");
+    Impl& self = *impl_;
+    self.device->make_current();
+    const GlTable& gl = self.device->gl();
+    if (!self.buffer || self.buffer->width() != picture.width || self.buffer->height() != picture.height) {
+        self.buffer = std::make_unique<GlFramebuffer>(self.device, picture.width, picture.height,
+                                                      std::vector<GLenum>{GL_RGBA8}, false);
+    }
+    self.buffer->bind();
+    gl.Disable(GL_DEPTH_TEST);
+    gl.Disable(GL_CULL_FACE);
+    gl.Disable(GL_SCISSOR_TEST);
+    gl.ClearColor(0, 0, 0, 0);
+    gl.Clear(GL_COLOR_BUFFER_BIT);
+    gl.Enable(GL_BLEND);
+    gl.BlendEquation(GL_FUNC_ADD);
+    gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    self.program.use();
+    self.use_atlas(list.atlas);
+    gl.Uniform1i(self.program.uniform("u_atlas"), 0);
+    gl.Uniform2f(self.program.uniform("u_size"), list.width, list.height);
+
+    self.vertices.clear();
+    for (const DrawVertex& v : list.vertices) {
+        self.vertices.insert(self.vertices.end(), {v.x, v.y, v.u, v.v});
+        for (unsigned shift = 0; shift < 32; shift += 8) {
+            self.vertices.push_back(static_cast<float>((v.rgba >> shift) & 0xFFU) / 255.0F);
+        }
+    }
+    self.mesh.set_vertices(self.vertices);
+    self.mesh.set_indices(list.indices);
+    gl.Enable(GL_SCISSOR_TEST);
+    for (const DrawCommand& command : list.commands) {
+        const auto x = static_cast<GLint>(std::max(0.0F, command.x0));
+        const auto y = static_cast<GLint>(std::max(0.0F, command.y0));
+        const auto w = static_cast<GLsizei>(command.x1) - x;
+        const auto h = static_cast<GLsizei>(command.y1) - y;
+        if (w <= 0 || h <= 0) continue;
+        gl.Scissor(x, y, w, h);
+        self.mesh.draw(command.first_index, command.index_count);
+    }
+    gl.Disable(GL_SCISSOR_TEST);
+
+    self.rgba.resize(picture.rgb.size() / 3 * 4);
+    self.buffer->read(0, GL_RGBA, GL_UNSIGNED_BYTE, self.rgba.data());
+    self.device->check("overlay");
+    for (std::size_t i = 0; i < self.rgba.size() / 4; ++i) {
+        const unsigned rest = 255U - self.rgba[4 * i + 3];
+        if (rest == 255U) continue;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const unsigned below = picture.rgb[3 * i + k];
+            const unsigned sum = self.rgba[4 * i + k] + (below * rest + 127U) / 255U;
+            picture.rgb[3 * i + k] = static_cast<std::uint8_t>(std::min(255U, sum));
+        }
+    }
+}
+
+}  // namespace cathlab

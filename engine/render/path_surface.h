@@ -1,0 +1,15 @@
+// For this room's .cpp files only.
+#pragma once
+
+#include "render/gl_device.h"
+
+namespace cathlab {
+
+class PathSurface {
+public:
+    explicit PathSurface(GlDevicePtr device) : mesh(std::move(device), {3, 1}) {}
+    GlMesh mesh;
+    bool has_values = false;
+};
+
+}  // namespace cathlab
