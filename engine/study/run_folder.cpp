@@ -1,0 +1,71 @@
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/errors.h"
+#include "study/run_index.h"
+
+namespace cathlab {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+Json read_json(const fs::path& file) {
+    std::ifstream in(file);
+    if (!in) throw UserError(file.string() + ": cannot be read");
+    Json out = Json::parse(in, nullptr, false);
+    if (out.is_discarded() || !out.is_object()) throw UserError(file.string() + ": is not a JSON object");
+    return out;
+}
+
+template <class T>
+T value_or(const Json& json, const fs::path& file, const char* key, T fallback) {
+    const auto it = json.find(key);
+    if (it == json.end() || it->is_null()) return fallback;
+    try {
+        return it->get<T>();
+    } catch (const Json::exception&) {
+        throw UserError({file.string(), 0, key}, "has the wrong type: " + it->dump());
+    }
+}
+
+}  // namespace
+
+void check_pseudonym(const std::string& text) {
+    constexpr std::size_t longest = 32;
+    const bool plain =
+        text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") == std::string::npos;
+    if (text.empty() || text.size() > longest || !plain)
+        throw UserError("'" + text +
+                        "' is no pseudonym: use letters, digits, '-' and '_', at most 32, for instance P07");
+}
+
+RunEntry read_run_folder(const std::string& root, const std::string& folder) {
+    const fs::path path = fs::path(root) / folder;
+    const fs::path manifest_file = path / "manifest.json";
+    const Json manifest = read_json(manifest_file);
+    const auto text = [&](const char* key) { return value_or<std::string>(manifest, manifest_file, key, ""); };
+    RunEntry entry;
+    entry.folder = fs::path(folder).lexically_normal().generic_string();
+    entry.participant = text("participant");
+    entry.group = text("group");
+    entry.task = text("task");
+    entry.trial = value_or(manifest, manifest_file, "trial", 0);
+    entry.scene = text("scene");
+    entry.scene_hash = text("scene_hash");
+    entry.version = text("version");
+    entry.complete = value_or(manifest, manifest_file, "complete", true);
+    if (!entry.participant.empty()) check_pseudonym(entry.participant);
+    const fs::path metrics_file = path / "metrics.json";
+    if (!fs::exists(metrics_file)) {
+        if (entry.complete) throw UserError(metrics_file.string() + ": is missing");
+        return entry;
+    }
+    const Json metrics = read_json(metrics_file);
+    for (const auto& [name, value] : metrics.items())
+        if (value.is_number()) entry.metrics[name] = value.get<double>();
+    return entry;
+}
+
+}  // namespace cathlab
