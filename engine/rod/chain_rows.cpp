@@ -8,10 +8,14 @@
 namespace cathlab {
 namespace {
 
-constexpr double creep_mm_s = 0.5;       // speed below which friction is a stiff viscous force
-constexpr int free_passes = 5;           // passes in which rows may engage
-constexpr int last_rubbing_pass = 30;    // a row that still leaves its cone then loses its friction
-constexpr double cone_tolerance = 1e-9;  // of the cone's half width
+constexpr double creep_mm_s = 0.5;        // speed below which friction is a stiff viscous force
+constexpr int rubbing_passes = 4;         // passes in which friction may grow or turn
+constexpr int engaging_passes = 12;       // passes in which rows may engage
+constexpr int last_rubbing_pass = 30;     // a row that still leaves its cone then loses its friction
+constexpr double slide_tolerance = 0.05;  // of the cone: how far a sliding row's force may be from the law's
+constexpr double inside_cone = 0.99;      // aim of a sliding row, so that a small loss of normal force leaves it legal
+constexpr double well_inside_cone = 0.9;  // the same when passes run out
+constexpr double cone_tolerance = 1e-9;   // of the cone's half width
 
 Vec3 across(const Vec3& v, const Vec3& normal) {
     return v - normal * normal.dot(v);
@@ -36,6 +40,18 @@ void ChainRows::set_stick(Work& w, double load) const {
     w.stick_load = load;
 }
 
+// A row that comes in sliding goes on sliding.
+void ChainRows::set_rub(Work& w, double load) const {
+    const Vec3 slip = across(w.row.slip, w.row.normal);
+    const double size = slip.norm();
+    if (size <= 2.0 * rest_slip_ || slip.dot(w.row.tangent_force) >= 0.0) {
+        set_stick(w, load);
+        return;
+    }
+    w.rub = Rub::slide;
+    w.slide = slip * (-inside_cone * w.row.friction * load / size);
+}
+
 void ChainRows::begin(std::span<const ChainRow> rows, std::size_t free_links, double h) {
     free_links_ = free_links;
     rest_slip_ = creep_mm_s * h;
@@ -49,7 +65,7 @@ void ChainRows::begin(std::span<const ChainRow> rows, std::size_t free_links, do
         const double first = w.row.multiplier - w.row.gap / w.row.compliance;
         w.active = w.row.bilateral || first > 0.0;
         const double load = std::max(0.0, w.row.multiplier);
-        if (w.active && w.row.friction > 0.0 && load > 0.0) set_stick(w, load);
+        if (w.active && w.row.friction > 0.0 && load > 0.0) set_rub(w, load);
         start_[std::min(static_cast<std::size_t>(w.row.link), free_links) + 1] += 1;
     }
     for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
@@ -106,14 +122,20 @@ bool ChainRows::update_friction(Work& w, const Vec6& d, int pass) const {
         w.rub = Rub::none;
         return false;
     }
-    const bool free_pass = pass < free_passes;
+    const bool free_pass = pass < rubbing_passes;
     const double cone = w.row.friction * std::fabs(w.multiplier);
     const double c = w.row.compliance;
     const Vec3 moved = across(d.head<3>() + d.tail<3>().cross(w.row.arm), w.row.normal);
     const Vec3 slip_before = across(w.row.slip, w.row.normal) + moved - c * w.row.tangent_force;  // s' - c f'
     if (w.rub == Rub::none) {
         if (!free_pass || cone <= 0.0) return false;
-        set_stick(w, std::fabs(w.multiplier));
+        const double speed = slip_before.norm();
+        if (speed > 2.0 * (rest_slip_ + c * cone)) {
+            w.rub = Rub::slide;
+            w.slide = slip_before * (-inside_cone * cone / speed);
+        } else {
+            set_stick(w, std::fabs(w.multiplier));
+        }
         return true;
     }
     w.tangent = w.rub == Rub::stick ? Vec3(-w.stick * slip_before) : w.slide;
@@ -127,12 +149,12 @@ bool ChainRows::update_friction(Work& w, const Vec6& d, int pass) const {
             return true;
         }
         const Vec3 wanted = slip * (-cone / speed);
-        if ((wanted - w.tangent).norm() <= 0.01 * cone && size <= cone) return false;
-        w.slide = 0.999 * wanted;
+        if ((wanted - w.tangent).norm() <= slide_tolerance * cone && size <= cone) return false;
+        w.slide = inside_cone * wanted;
         return true;
     }
     if (size > cone * (1.0 + cone_tolerance)) {
-        const double keep = pass < last_rubbing_pass ? (free_pass ? 0.999 : 0.97) * cone / size : 0.0;
+        const double keep = pass < last_rubbing_pass ? (free_pass ? inside_cone : well_inside_cone) * cone / size : 0.0;
         w.slide = w.tangent * keep;
         w.rub = Rub::slide;
         return true;
@@ -151,7 +173,7 @@ std::size_t ChainRows::update(const std::vector<Vec6>& solution, int pass) {
         bool changed = false;
         for (std::size_t k = start_[i]; k < start_[i + 1]; ++k) {
             Work& w = work_[order_[k]];
-            changed |= update_normal(w, d, pass < free_passes);
+            changed |= update_normal(w, d, pass < engaging_passes);
             changed |= update_friction(w, d, pass);
         }
         if (changed && first == free_links_) first = i;

@@ -48,6 +48,7 @@ private:
     };
 
     void set_stick(Work& w, double load) const;
+    void set_rub(Work& w, double load) const;
     bool update_normal(Work& w, const Vec6& d, bool may_engage) const;
     bool update_friction(Work& w, const Vec6& d, int pass) const;
 

@@ -64,17 +64,14 @@ TEST(Row, ForcesOfRowsAndSheathMakeUpTheChangeOfMomentum) {
         std::vector<ChainRow> rows;
         for (Index i = 0; i < 60; i += 3) {
             const Vec3 n = Vec3(i % 2 == 0 ? 1.0 : -1.0, 0.3, 0.1).normalized();
-            rows.push_back(row_at(i, n, 0.05 * std::cos(0.1 * step + i), 0.02));
+            rows.push_back(row_at(i, n, 0.002 * std::cos(0.1 * step + i), 0.02));
             rows.back().friction = 0.3;
             rows.back().slip = Vec3(0.02, 0.0, -0.01) - n * n.dot(Vec3(0.02, 0.0, -0.01));
             rows.back().arm = Vec3(0.4, 0.1, 0.7);
         }
+        rod.command(0.1, 0.01);  // a link that enters brings its momentum along, hence only now:
         const Vec3 before = momentum(rod);
-        rod.command(0.1, 0.01);
-        const std::size_t free_after = rod.free_link_count();
         rod.predict(h);
-        Vec3 predicted = Vec3::Zero();
-        for (std::size_t i = 0; i < free_after; ++i) predicted += rod.link_mass(i) * rod.link_velocity(i);
         rod.solve(h, rows);
         rod.solve(h, rows);
         rod.finish(h);
@@ -84,8 +81,8 @@ TEST(Row, ForcesOfRowsAndSheathMakeUpTheChangeOfMomentum) {
             force += row.multiplier * row.normal + row.tangent_force;
             size += std::fabs(row.multiplier);
         }
-        const Vec3 change = (momentum(rod) - predicted) / h;
-        EXPECT_LT((change - force).norm(), 1e-6 * size) << "step " << step << " of momentum " << before.norm();
+        const Vec3 change = (momentum(rod) - before) / h;
+        EXPECT_LT((change - force).norm(), 1e-6 * size) << "step " << step;
     }
 }
 
@@ -94,6 +91,8 @@ TEST(Row, FrictionStaysInItsCone) {
     const double h = 0.004;
     int pressed = 0, sliding = 0;
     for (int step = 0; step < 300; ++step) {
+        std::vector<Vec3> start;
+        for (std::size_t i = 0; i < 40; ++i) start.push_back(rod.link_pose(i).position);
         rod.command(step < 150 ? 0.3 : -0.3, 0.02);
         rod.predict(h);
         std::vector<ChainRow> rows;
@@ -102,9 +101,9 @@ TEST(Row, FrictionStaysInItsCone) {
             rows.push_back(row_at(i, Vec3::UnitY(), pose.position.y() - 0.2 * std::sin(0.5 * i), 0.05));
             rows.back().friction = 0.2;
             rows.back().arm = Vec3(0.0, -0.178, 0.0);
+            rows.back().slip = pose.position - start[static_cast<std::size_t>(i)];
+            rows.back().slip.y() = 0.0;
         }
-        std::vector<Vec3> start;
-        for (const ChainRow& row : rows) start.push_back(rod.link_pose(static_cast<std::size_t>(row.link)).position);
         rod.solve(h, rows);
         for (const ChainRow& row : rows) {
             EXPECT_GE(row.multiplier, 0.0);
@@ -130,12 +129,10 @@ TEST(Row, APressedWireThatSlidesFeelsTheCoulombForceAtTheSheath) {
         const std::vector<Vec3> push(10, Vec3(0.0, -weight, 0.0));
         rod.predict(h, push);
         std::vector<ChainRow> rows;
-        std::vector<Vec3> start;
         for (Index i = 0; i < 10; ++i) {
             rows.push_back(row_at(i, Vec3::UnitY(), 0.0, 1e-3));
             rows.back().friction = mu;
         }
-        std::vector<double> floor(10, 0.0);
         for (int k = 0; k < 2; ++k) {
             for (std::size_t i = 0; i < rows.size(); ++i) {
                 rows[i].gap = rod.link_pose(i).position.y() + 1e-3 * rows[i].multiplier;
