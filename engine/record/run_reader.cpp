@@ -1,0 +1,195 @@
+#include "record/run_reader.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <string_view>
+
+#include "core/check.h"
+#include "record/json_lines.h"
+#include "record/run_files.h"
+#include "scene/toml_document.h"
+
+namespace cathlab {
+namespace {
+
+std::vector<std::string> cells_of(const std::string& line) {
+    std::vector<std::string> out;
+    std::size_t begin = 0;
+    for (;;) {
+        const std::size_t comma = line.find(',', begin);
+        out.push_back(line.substr(begin, comma == std::string::npos ? std::string::npos : comma - begin));
+        if (comma == std::string::npos) return out;
+        begin = comma + 1;
+    }
+}
+
+template <class T>
+bool parse_number(const std::string& text, T& out) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+Input parse_input(const nlohmann::json& value, const SourcePlace& where) {
+    JsonFields fields(value, where);
+    Input input;
+    for (const ActionInfo& action : action_table()) {
+        double& out = input.*action.value;
+        fields.read(std::string(action.name), out);
+        if (!(out >= action.minimum && out <= action.maximum))
+            throw UserError({where.file, where.line, std::string(action.name)},
+                            "found " + std::to_string(out) + ", which no run can have recorded");
+    }
+    fields.done();
+    return input;
+}
+
+void read_inputs(RunRecord& run, std::int64_t& end) {
+    const std::string path = run.folder + "/inputs.jsonl";
+    SourcePlace where{path, 0, ""};
+    end = -1;
+    for (const std::string& line : read_lines(path, run.manifest.complete)) {
+        ++where.line;
+        if (end >= 0) throw UserError(where, "a line after the end of the run");
+        JsonFields fields(parse_json(line, where), where);
+        if (fields.has("end")) {
+            fields.read("end", end);
+            fields.done();
+            continue;
+        }
+        std::int64_t step = 0;
+        fields.read("step", step);
+        const Input input = parse_input(fields.member("input"), where);
+        fields.done();
+        const bool in_order = run.inputs.empty() ? step == 0 : step > run.inputs.back().first;
+        if (!in_order) throw UserError(where, "step " + std::to_string(step) + " is out of order");
+        run.inputs.emplace_back(step, input);
+    }
+}
+
+void read_hashes(RunRecord& run) {
+    const std::string path = run.folder + "/hashes.csv";
+    SourcePlace where{path, 0, ""};
+    std::vector<std::string> names;
+    for (const std::string& line : read_lines(path, run.manifest.complete)) {
+        ++where.line;
+        std::vector<std::string> cells = cells_of(line);
+        if (where.line == 1) {
+            if (cells.size() < 2 || cells[0] != "step" || cells[1] != "whole")
+                throw UserError(where, "the header step,whole,... is wanted");
+            names = std::move(cells);
+            continue;
+        }
+        if (cells.size() != names.size())
+            throw UserError(where, "found " + std::to_string(cells.size()) + " cells, " + std::to_string(names.size()) +
+                                       " are wanted");
+        RecordedHash row;
+        if (!parse_number(cells[0], row.steps) || row.steps < (run.hashes.empty() ? 0 : run.hashes.back().steps + 1))
+            throw UserError(where, "found '" + cells[0] + "'; a step that rises from line to line is wanted");
+        for (std::size_t i = 1; i < cells.size(); ++i) {
+            const auto hash = parse_hash(cells[i]);
+            if (!hash)
+                throw UserError(where, "found '" + cells[i].substr(0, 40) + "'; sixteen hexadecimal digits are wanted");
+            if (i == 1)
+                row.hash.whole = *hash;
+            else
+                row.hash.entities.emplace_back(names[i], *hash);
+        }
+        run.hashes.push_back(std::move(row));
+    }
+    if (where.line == 0) throw UserError(where, "is empty");
+}
+
+}  // namespace
+
+const Input& RunRecord::input_at(std::int64_t step) const {
+    CATHLAB_CHECK(!inputs.empty(), "a run that was read has an input for its first step");
+    const auto after = std::upper_bound(inputs.begin(), inputs.end(), step,
+                                        [](std::int64_t s, const auto& line) { return s < line.first; });
+    return std::prev(after)->second;
+}
+
+RunRecord read_run(const std::string& folder) {
+    const std::string manifest = folder + "/manifest.json";
+    if (!std::filesystem::exists(manifest)) throw UserError(folder + ": is no run folder (it has no manifest.json)");
+    RunRecord run;
+    run.folder = folder;
+    run.manifest = parse_manifest(read_text_file(manifest, 1U << 20U), manifest);
+    std::int64_t end = -1;
+    read_inputs(run, end);
+    read_hashes(run);
+    const std::int64_t last_input = run.inputs.empty() ? -1 : run.inputs.back().first;
+    const std::int64_t last_hash = run.hashes.empty() ? 0 : run.hashes.back().steps;
+    if (run.manifest.complete && end != run.manifest.steps)
+        throw UserError(folder + "/inputs.jsonl: does not end with the run's " + std::to_string(run.manifest.steps) +
+                        " steps (truncated or edited?)");
+    run.steps = end >= 0 ? end : std::max(last_input + 1, last_hash);
+    if (last_input >= run.steps && run.steps > 0)
+        throw UserError(folder + "/inputs.jsonl: has an input for step " + std::to_string(last_input) + " of " +
+                        std::to_string(run.steps));
+    if (last_hash > run.steps)
+        throw UserError(folder + "/hashes.csv: has a hash of step " + std::to_string(last_hash) + " of " +
+                        std::to_string(run.steps));
+    if (run.steps > 0 && run.inputs.empty()) throw UserError(folder + "/inputs.jsonl: has no input (truncated?)");
+    if (run.manifest.complete && last_hash != run.steps)
+        throw UserError(folder + "/hashes.csv: does not end with step " + std::to_string(run.steps) +
+                        " (truncated or edited?)");
+    return run;
+}
+
+std::vector<Channels> read_trace(const std::string& folder, bool complete) {
+    const std::string path = folder + "/trace.csv";
+    SourcePlace where{path, 0, ""};
+    const auto channels = channel_table();
+    std::vector<Channels> out;
+    for (const std::string& line : read_lines(path, complete)) {
+        ++where.line;
+        const std::vector<std::string> cells = cells_of(line);
+        if (cells.size() != channels.size() + 1)
+            throw UserError(where, "found " + std::to_string(cells.size()) + " columns, " +
+                                       std::to_string(channels.size() + 1) + " are wanted");
+        if (where.line == 1) {
+            for (std::size_t i = 0; i < channels.size(); ++i) {
+                const std::string wanted = std::string(channels[i].name) + " [" + std::string(channels[i].unit) + "]";
+                if (cells[i + 1] != wanted)
+                    throw UserError(
+                        where, "found the column '" + cells[i + 1].substr(0, 60) + "', '" + wanted + "' is wanted");
+            }
+            continue;
+        }
+        std::int64_t step = 0;
+        if (!parse_number(cells[0], step) || step != static_cast<std::int64_t>(out.size()))
+            throw UserError(
+                where, "found step '" + cells[0].substr(0, 40) + "', " + std::to_string(out.size()) + " is wanted");
+        Channels& row = out.emplace_back();
+        for (std::size_t i = 0; i < channels.size(); ++i)
+            if (!parse_number(cells[i + 1], row.*channels[i].value))
+                throw UserError({path, where.line, std::string(channels[i].name)},
+                                "found '" + cells[i + 1].substr(0, 40) + "', a number is wanted");
+    }
+    if (where.line == 0) throw UserError(where, "is empty");
+    return out;
+}
+
+std::string first_difference(const World::StateHash& recorded, const World::StateHash& now) {
+    if (recorded.entities.size() != now.entities.size()) return "the list of entities";
+    for (std::size_t i = 0; i < now.entities.size(); ++i) {
+        if (recorded.entities[i].first != now.entities[i].first) return "the list of entities";
+        if (recorded.entities[i].second != now.entities[i].second) return now.entities[i].first;
+    }
+    return recorded.whole == now.whole ? "" : "the whole";
+}
+
+const ChannelInfo* first_difference(const Channels& recorded, const Channels& now) {
+    for (const ChannelInfo& channel : channel_table()) {
+        const double a = recorded.*channel.value;
+        const double b = now.*channel.value;
+        if (std::isnan(a) && std::isnan(b)) continue;  // a table has one NaN only
+        if (std::memcmp(&a, &b, sizeof(double)) != 0) return &channel;
+    }
+    return nullptr;
+}
+
+}  // namespace cathlab
