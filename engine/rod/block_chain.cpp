@@ -1,64 +1,73 @@
 #include "rod/block_chain.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include "core/check.h"
 
 namespace cathlab {
 namespace {
 
-// The loops run over all six rows of a column, also above the diagonal: two by two they fill the processor's lanes.
-// L (column-major, inverse diagonal) of S = D - X X^T, or of D where cross is null.
-void factor_block(const double* d, const double* cross, double* l) {
-    for (int c = 0; c < 6; ++c) {
-        double column[6];
-        for (int r = 0; r < 6; ++r) column[r] = d[6 * c + r];
-        if (cross != nullptr) {
-            for (int k = 0; k < 6; ++k) {
-                const double s = cross[6 * k + c];
-                for (int r = 0; r < 6; ++r) column[r] -= cross[6 * k + r] * s;
-            }
-        }
-        for (int k = 0; k < c; ++k) {
-            const double s = l[6 * k + c];
-            for (int r = 0; r < 6; ++r) column[r] -= l[6 * k + r] * s;
-        }
-        CATHLAB_CHECK(column[c] > 0.0 && std::isfinite(column[c]), "the chain's system is not positive definite");
-        const double inverse = 1.0 / std::sqrt(column[c]);
-        for (int r = 0; r < 6; ++r) l[6 * c + r] = column[r] * inverse;
-        l[6 * c + c] = inverse;
-    }
+// Two rows of a column side by side, as GCC and Clang write it for any processor; each lane is an ordinary double, so
+// the bits are those of the plain loop.
+using Pair = double __attribute__((vector_size(16)));
+
+struct Column {
+    Pair p[3];
+};
+
+inline Column load(const double* from) {
+    Column c;
+    __builtin_memcpy(&c, from, sizeof c);
+    return c;
 }
 
-// X = E L^{-T}, column by column: X L^T = E.
-void cross_block(const double* e, const double* l, double* x) {
-    for (int c = 0; c < 6; ++c) {
-        double column[6];
-        for (int r = 0; r < 6; ++r) column[r] = e[6 * c + r];
-        for (int k = 0; k < c; ++k) {
-            const double s = l[6 * k + c];
-            for (int r = 0; r < 6; ++r) column[r] -= x[6 * k + r] * s;
-        }
-        const double inverse = l[6 * c + c];
-        for (int r = 0; r < 6; ++r) x[6 * c + r] = column[r] * inverse;
-    }
+inline void store(double* to, const Column& c) {
+    __builtin_memcpy(to, &c, sizeof c);
 }
 
-void forward(const double* l, double* y) {  // y <- L^{-1} y
-    for (int c = 0; c < 6; ++c) {
-        y[c] *= l[6 * c + c];
-        for (int r = c + 1; r < 6; ++r) y[r] -= l[6 * c + r] * y[c];
-    }
-}
-
-void backward(const double* l, double* y) {  // y <- L^{-T} y
-    for (int c = 5; c >= 0; --c) {
-        for (int r = c + 1; r < 6; ++r) y[c] -= l[6 * c + r] * y[r];
-        y[c] *= l[6 * c + c];
-    }
+// c <- c - s v from the pair of rows `first` on
+inline void subtract(Column& c, const double* v, double s, int first) {
+    const Column other = load(v);
+    for (int i = first; i < 3; ++i) c.p[i] -= other.p[i] * s;
 }
 
 }  // namespace
+
+void BlockChain::factor_block(const double* diagonal, const Factor* before, Factor& f) {
+    Column unscaled[6];  // L_k d_k
+#pragma GCC unroll 6
+    for (int c = 0; c < 6; ++c) {
+        const int top = c / 2;  // rows above the diagonal are left as they come
+        Column column = load(diagonal + 6 * c);
+        if (before != nullptr) {
+#pragma GCC unroll 6
+            for (int k = 0; k < 6; ++k) subtract(column, before->z + 6 * k, before->w[6 * k + c], top);
+        }
+#pragma GCC unroll 6
+        for (int k = 0; k < c; ++k) {
+            const double s = f.l[6 * k + c];
+            for (int i = top; i < 3; ++i) column.p[i] -= unscaled[k].p[i] * s;
+        }
+        const double pivot = column.p[c / 2][c % 2];
+        CATHLAB_CHECK(pivot > 0.0 && pivot < 1e300, "the chain's system is not positive definite");
+        f.inverse[c] = 1.0 / pivot;
+        unscaled[c] = column;
+        for (Pair& pair : column.p) pair *= f.inverse[c];
+        store(f.l + 6 * c, column);
+    }
+}
+
+void BlockChain::cross_block(const double* below, Factor& f) {
+#pragma GCC unroll 6
+    for (int c = 0; c < 6; ++c) {
+        Column column = load(below + 6 * c);
+#pragma GCC unroll 6
+        for (int k = 0; k < c; ++k) subtract(column, f.z + 6 * k, f.l[6 * k + c], 0);
+        store(f.z + 6 * c, column);
+        for (Pair& pair : column.p) pair *= f.inverse[c];
+        store(f.w + 6 * c, column);
+    }
+}
 
 void BlockChain::resize(std::size_t blocks) {
     diagonal.assign(blocks, Mat6::Zero());
@@ -66,23 +75,32 @@ void BlockChain::resize(std::size_t blocks) {
     right.assign(blocks, Vec6::Zero());
     solution.resize(blocks);
     factor_.resize(blocks);
-    cross_.resize(blocks);
-    half_.resize(blocks);
 }
 
 void BlockChain::factor_and_solve(std::size_t first) {
     const std::size_t n = size();
     for (std::size_t i = first; i < n; ++i) {
-        factor_block(diagonal[i].data(), i > 0 ? cross_[i - 1].data() : nullptr, factor_[i].data());
-        if (i + 1 < n) cross_block(below[i].data(), factor_[i].data(), cross_[i].data());
-        half_[i] = right[i];
-        if (i > 0) half_[i].noalias() -= cross_[i - 1].lazyProduct(half_[i - 1]);
-        forward(factor_[i].data(), half_[i].data());
+        Factor& f = factor_[i];
+        factor_block(diagonal[i].data(), i > 0 ? &factor_[i - 1] : nullptr, f);
+        if (i + 1 < n) cross_block(below[i].data(), f);
+        Column y = load(right[i].data());
+        if (i > 0)
+            for (int k = 0; k < 6; ++k) subtract(y, factor_[i - 1].w + 6 * k, factor_[i - 1].y[k], 0);
+        store(f.y, y);
+        for (int k = 0; k < 5; ++k)
+            for (int r = k + 1; r < 6; ++r) f.y[r] -= f.l[6 * k + r] * f.y[k];
     }
     for (std::size_t i = n; i-- > 0;) {
-        solution[i] = half_[i];
-        if (i + 1 < n) solution[i].noalias() -= cross_[i].transpose().lazyProduct(solution[i + 1]);
-        backward(factor_[i].data(), solution[i].data());
+        const Factor& f = factor_[i];
+        double d[6];
+        for (int c = 0; c < 6; ++c) {
+            d[c] = f.y[c] * f.inverse[c];
+            if (i + 1 < n)
+                for (int r = 0; r < 6; ++r) d[c] -= f.w[6 * c + r] * solution[i + 1][r];
+        }
+        for (int c = 4; c >= 0; --c)
+            for (int r = c + 1; r < 6; ++r) d[c] -= f.l[6 * c + r] * d[r];
+        std::copy(d, d + 6, solution[i].data());
     }
 }
 

@@ -20,15 +20,23 @@ public:
     void resize(std::size_t blocks);
     std::size_t size() const { return diagonal.size(); }
 
-    /// Block Cholesky from block `first` on (earlier factors are kept from the last call), then both substitutions:
-    ///   S_i = D_i - X_{i-1} X_{i-1}^T = L_i L_i^T,   X_i = E_i L_i^{-T}.
+    /// Block L D L^T from block `first` on (earlier factors are kept from the last call), then both substitutions:
+    ///   S_i = D_i - Z_{i-1} W_{i-1}^T = L_i d_i L_i^T,   Z_i = E_i L_i^{-T},   W_i = Z_i d_i^{-1}   (L_i unit, d_i
+    ///   diagonal).
     /// Throws std::logic_error where a pivot is not positive (the system was not positive definite, or not finite).
     void factor_and_solve(std::size_t first);
 
 private:
-    std::vector<Mat6> factor_;  // L_i, with 1 / L_kk on the diagonal
-    std::vector<Mat6> cross_;   // X_i
-    std::vector<Vec6> half_;    // L_i^{-1} (r_i - X_{i-1} y_{i-1})
+    struct Factor {
+        alignas(16) double l[36];         // L_i by columns; what stands on and above its diagonal is not used
+        alignas(16) double z[36], w[36];  // Z_i, W_i by columns
+        double inverse[6];                // 1 / d_i
+        alignas(16) double y[6];          // L_i^{-1} (r_i - W_{i-1} y_{i-1})
+    };
+    std::vector<Factor> factor_;
+
+    static void factor_block(const double* diagonal, const Factor* before, Factor& f);
+    static void cross_block(const double* below, Factor& f);
 };
 
 }  // namespace cathlab

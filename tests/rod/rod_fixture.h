@@ -29,7 +29,7 @@ inline WireSpec bmw(double link_mm = 3.0) {
     return uniform_wire(75.0, 0.356, link_mm);
 }
 inline WireSpec amplatz(double link_mm = 3.0) {
-    return uniform_wire(1850.0, 0.889, link_mm);
+    return uniform_wire(1850.0, 0.889, link_mm, 1200.0);
 }
 
 inline void substep(Rod& rod, double h, std::span<const Vec3> force = {}, std::span<ChainRow> rows = {},
