@@ -223,10 +223,18 @@ double air_energy_absorption_cm2_g(double energy_kev) {
                                                              {80.0, 0.02407},
                                                              {100.0, 0.02325},
                                                              {150.0, 0.02496}}};
-    const double e = std::clamp(energy_kev, 20.0, 150.0);
+    // Cubic through the four nearest, in logarithms: the curve bends too much between 20 and 60 keV for straight lines.
+    const double x = det::log(std::clamp(energy_kev, 20.0, 150.0));
     std::size_t k = 0;
-    while (k + 2 < table.size() && e > table[k + 1][0]) ++k;
-    return log_log(det::log(e), det::log(table[k][0]), table[k][1], det::log(table[k + 1][0]), table[k + 1][1]);
+    while (k + 4 < table.size() && x > det::log(table[k + 2][0])) ++k;
+    double sum = 0.0;
+    for (std::size_t i = k; i < k + 4; ++i) {
+        double term = det::log(table[i][1]);
+        for (std::size_t j = k; j < k + 4; ++j)
+            if (j != i) term *= (x - det::log(table[j][0])) / (det::log(table[i][0]) - det::log(table[j][0]));
+        sum += term;
+    }
+    return det::exp(sum);
 }
 
 }  // namespace cathlab

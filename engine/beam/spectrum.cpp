@@ -67,6 +67,7 @@ FineSpectrum fine_spectrum(const SpectrumSpec& spec) {
         signal += out.signal.back();
         kerma += n * middle * air_energy_absorption_cm2_g(middle);
     }
+    out.total = photons;
     for (double& n : out.photons) n /= photons;
     for (double& s : out.signal) s /= signal;
     // keV cm2/g per photon -> nGy mm2: 100 mm2/cm2, 1000 g/kg, 1e9 nGy/Gy.

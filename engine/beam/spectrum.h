@@ -16,8 +16,9 @@ struct SpectrumSpec {
 /// anode, photons(E) ~ kvp / E - 1 [kramers1923], behind the filters.  Characteristic lines are left out.
 struct FineSpectrum {
     std::vector<double> energy_kev;
-    std::vector<double> photons;    ///< sums to 1, at the exit of the tube
-    std::vector<double> signal;     ///< energy deposited in the detector per such photon without a patient, sums to 1
+    std::vector<double> photons;  ///< sums to 1, at the exit of the tube
+    std::vector<double> signal;   ///< energy deposited in the detector per such photon without a patient, sums to 1
+    double total = 0.0;           ///< what `photons` was before it was made to sum to 1; compares tube outputs per mAs
     double kerma_per_photon = 0.0;  ///< air kerma per unit fluence at the tube's exit, nGy mm2
 };
 FineSpectrum fine_spectrum(const SpectrumSpec& spec);

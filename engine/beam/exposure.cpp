@@ -1,0 +1,144 @@
+#include "beam/exposure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/deterministic_math.h"
+
+namespace cathlab {
+namespace {
+
+void require_range(const SourcePlace& where, const std::string& key, double value, double least, double most) {
+    if (std::isfinite(value) && value >= least && value <= most) return;
+    SourcePlace place = where;
+    place.key = key;
+    std::ostringstream text;
+    text << "found " << value << ", allowed is " << least << " to " << most;
+    throw UserError(place, text.str());
+}
+
+FineSpectrum spectrum_at(const BeamSpec& spec, double kvp) {
+    return fine_spectrum({kvp, spec.aluminium_mm, spec.copper_mm, spec.caesium_iodide_mm});
+}
+
+double towards(double now, double target, double most) {
+    return std::isfinite(target) ? now + std::clamp(target - now, -most, most) : now;
+}
+
+}  // namespace
+
+void validate(const BeamSpec& spec, const SourcePlace& where) {
+    validate(spec.c_arm, where);
+    if (spec.pulses_per_s != 7.5 && spec.pulses_per_s != 15.0 && spec.pulses_per_s != 30.0) {
+        SourcePlace place = where;
+        place.key = "pulses_per_s";
+        std::ostringstream text;
+        text << "found " << spec.pulses_per_s << ", allowed is 7.5, 15 or 30";
+        throw UserError(place, text.str());
+    }
+    require_range(where, "primary_deg", spec.primary_deg, -180.0, 180.0);
+    require_range(where, "secondary_deg", spec.secondary_deg, -90.0, 90.0);
+    require_range(where, "target_kerma_ngy", spec.target_kerma_ngy, 1.0, 10000.0);
+    require_range(where, "lag_s", spec.lag_s, 0.0, 10.0);
+    require_range(where, "aluminium_mm", spec.aluminium_mm, 1.0, 20.0);
+    require_range(where, "copper_mm", spec.copper_mm, 0.0, 2.0);
+    require_range(where, "caesium_iodide_mm", spec.caesium_iodide_mm, 0.1, 2.0);
+    require_range(where, "kvp_min", spec.kvp_min, 40.0, 150.0);
+    require_range(where, "kvp_max", spec.kvp_max, spec.kvp_min, 150.0);
+    require_range(where, "kvp_at_20_cm", spec.kvp_at_20_cm, 40.0, 150.0);
+    require_range(where, "kvp_per_cm", spec.kvp_per_cm, 0.0, 20.0);
+    require_range(where, "mas_max", spec.mas_max, 0.01, 1000.0);
+    require_range(where, "tube_output_ugy_mas", spec.tube_output_ugy_mas, 1.0, 1000.0);
+    require_range(where, "grid_transmission", spec.grid_transmission, 0.05, 1.0);
+    require_range(where, "reference_point_mm", spec.reference_point_mm, 0.0, spec.c_arm.sod_mm - 50.0);
+    require_range(where, "kerma_rate_limit_mgy_min", spec.kerma_rate_limit_mgy_min, 0.1, 1000.0);
+}
+
+void visit(Archive& archive, BeamState& state) {
+    archive.field("primary_deg", state.primary_deg);
+    archive.field("secondary_deg", state.secondary_deg);
+    archive.field("pedal", state.pedal);
+    archive.field("water_mm", state.water_mm);
+    archive.field("kvp", state.kvp);
+    archive.field("mas", state.mas);
+    archive.field("detector_kerma_ngy", state.detector_kerma_ngy);
+    archive.field("air_kerma_mgy", state.air_kerma_mgy);
+    archive.field("kerma_rate_mgy_min", state.kerma_rate_mgy_min);
+    archive.field("dose_area_gycm2", state.dose_area_gycm2);
+    archive.field("beam_time_s", state.beam_time_s);
+    archive.field("frames", state.frames);
+}
+
+BeamState initial_state(const BeamSpec& spec) {
+    BeamState state;
+    state.primary_deg = spec.primary_deg;
+    state.secondary_deg = spec.secondary_deg;
+    state.kvp = expose(spec, state.water_mm, state.water_mm).kvp;
+    return state;
+}
+
+bool pulse_in_step(std::int64_t step, double dt, double pulses_per_s) {
+    // The small shift keeps a pulse that falls exactly on a step's end (rounded a hair below it) in that step.
+    const auto pulses_by = [&](std::int64_t s) {
+        return std::floor(static_cast<double>(s) * dt * pulses_per_s + 1e-9);
+    };
+    return pulses_by(step + 1) > pulses_by(step);
+}
+
+double tube_output_ugy_mas(const BeamSpec& spec, double kvp) {
+    // Per mAs a thick anode gives photons(E) ~ kvp / E - 1 for any voltage, so the outputs compare as those integrals
+    // do.
+    const FineSpectrum reference = fine_spectrum({80.0, 2.5, 0.0, spec.caesium_iodide_mm});
+    const FineSpectrum filtered = spectrum_at(spec, kvp);
+    return spec.tube_output_ugy_mas * filtered.total * filtered.kerma_per_photon /
+           (reference.total * reference.kerma_per_photon);
+}
+
+Pulse expose(const BeamSpec& spec, double set_water_mm, double true_water_mm) {
+    Pulse pulse;
+    pulse.kvp =
+        std::clamp(spec.kvp_at_20_cm + spec.kvp_per_cm * (0.1 * set_water_mm - 20.0), spec.kvp_min, spec.kvp_max);
+    const FineSpectrum spectrum = spectrum_at(spec, pulse.kvp);
+    const double output = tube_output_ugy_mas(spec, pulse.kvp);  // uGy per mAs at 1 m
+    const double to_detector = 1e6 / (spec.c_arm.sid_mm * spec.c_arm.sid_mm) * spec.grid_transmission;
+    const double reference_mm = spec.c_arm.sod_mm - spec.reference_point_mm;
+    const double to_reference = 1e6 / (reference_mm * reference_mm);
+    const double wanted =
+        1e-3 * spec.target_kerma_ngy / (output * to_detector * kerma_transmission(spectrum, set_water_mm));
+    const double mgy_per_pulse_limit = spec.kerma_rate_limit_mgy_min / (60.0 * spec.pulses_per_s);
+    pulse.mas = std::min({wanted, spec.mas_max, 1e3 * mgy_per_pulse_limit / (output * to_reference)});
+    pulse.detector_kerma_ngy = 1e3 * output * pulse.mas * to_detector * kerma_transmission(spectrum, true_water_mm);
+    pulse.reference_kerma_mgy = 1e-3 * output * pulse.mas * to_reference;
+    const double side_cm = 0.1 * spec.c_arm.field_mm * reference_mm / spec.c_arm.sid_mm;
+    const double aspect = static_cast<double>(spec.c_arm.rows) / static_cast<double>(spec.c_arm.columns);
+    pulse.dose_area_gycm2 = 1e-3 * pulse.reference_kerma_mgy * side_cm * side_cm * aspect;
+    return pulse;
+}
+
+bool advance(const BeamSpec& spec, BeamState& state, const BeamCommand& command, double water_mm, std::int64_t step,
+             double dt) {
+    const double turn = spec.c_arm.rotation_deg_s * dt;
+    state.primary_deg = towards(state.primary_deg, std::clamp(command.primary_deg, -180.0, 180.0), turn);
+    state.secondary_deg = towards(state.secondary_deg, std::clamp(command.secondary_deg, -90.0, 90.0), turn);
+    state.pedal = command.pedal;
+    state.kerma_rate_mgy_min = 0.0;
+    if (!command.pedal) return false;
+
+    const double truth = std::isfinite(water_mm) ? std::clamp(water_mm, 0.0, 600.0) : state.water_mm;
+    const double kept = spec.lag_s > 0.0 ? det::exp(-dt / spec.lag_s) : 0.0;
+    state.water_mm = truth + kept * (state.water_mm - truth);
+    state.beam_time_s += dt;
+    const Pulse pulse = expose(spec, state.water_mm, truth);
+    state.kvp = pulse.kvp;
+    state.mas = pulse.mas;
+    state.kerma_rate_mgy_min = 60.0 * spec.pulses_per_s * pulse.reference_kerma_mgy;
+    if (!pulse_in_step(step, dt, spec.pulses_per_s)) return false;
+    state.detector_kerma_ngy = pulse.detector_kerma_ngy;
+    state.air_kerma_mgy += pulse.reference_kerma_mgy;
+    state.dose_area_gycm2 += pulse.dose_area_gycm2;
+    ++state.frames;
+    return true;
+}
+
+}  // namespace cathlab
