@@ -64,7 +64,12 @@ TARGET static inline void NAMED(polar)(const NAMED(V) * a, NAMED(V) * q) {
         const NAMED(V) dx = newton ? (cxx * ax + cxy * ay + cxz * az) / safe : ax / denominator;
         const NAMED(V) dy = newton ? (cxy * ax + cyy * ay + cyz * az) / safe : ay / denominator;
         const NAMED(V) dz = newton ? (cxz * ax + cyz * ay + czz * az) / safe : az / denominator;
-        const NAMED(V) hx = REAL(0.5) * dx, hy = REAL(0.5) * dy, hz = REAL(0.5) * dz;
+        // The half turn's tangent, held below 1/2: Newton's step is no guide over more than 53 degrees.
+        const NAMED(V) turn2 = dx * dx + dy * dy + dz * dz;
+        NAMED(V) bound = REAL(1) + turn2;
+        for (int l = 0; l < WIDTH; ++l) bound[l] = SQRT(bound[l]);
+        const NAMED(V) half = REAL(0.5) / bound;
+        const NAMED(V) hx = half * dx, hy = half * dy, hz = half * dz;
         NAMED(V) n[4];
         n[0] = q[0] - q[1] * hx - q[2] * hy - q[3] * hz;
         n[1] = q[1] + q[0] * hx + q[2] * hz - q[3] * hy;
@@ -73,7 +78,6 @@ TARGET static inline void NAMED(polar)(const NAMED(V) * a, NAMED(V) * q) {
         NAMED(V) length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3];
         for (int l = 0; l < WIDTH; ++l) length[l] = SQRT(length[l]);
         for (int k = 0; k < 4; ++k) q[k] = done ? q[k] : n[k] / length;
-        const NAMED(V) turn2 = dx * dx + dy * dy + dz * dz;
         done = done | (turn2 < arrived) | (turn2 != turn2);
         bool all = true;
         for (int l = 0; l < WIDTH; ++l) all = all && done[l] != 0;

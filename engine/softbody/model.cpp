@@ -26,8 +26,8 @@ void check_positive(const std::string& name, double value) {
     require(value > 0.0 && std::isfinite(value), name, value, "above 0");
 }
 
-void check_stiffness(double value) {
-    require(value >= 0.0 && value <= largest_stiffness, "cluster_stiffness", value, "between 0 and 0.999");
+void check_stiffness(const std::string& name, double value) {
+    require(value >= 0.0 && value <= largest_stiffness, name, value, "between 0 and 0.999");
 }
 
 void check(const WallParameters& p) {
@@ -35,13 +35,13 @@ void check(const WallParameters& p) {
     check_positive("cluster_spacing_mm", p.cluster_spacing_mm);
     check_positive("cluster_radius_mm", p.cluster_radius_mm);
     check_positive("reference_spacing_mm", p.reference_spacing_mm);
-    check_stiffness(p.cluster_stiffness);
+    check_stiffness("cluster_stiffness", p.cluster_stiffness);
     require(p.damping_per_s >= 0.0 && std::isfinite(p.damping_per_s), "damping_per_s", p.damping_per_s, "0 or above");
     for (const RegionWall& own : p.regions) {
         if (own.cluster_spacing_mm) check_positive("cluster_spacing_mm of a region", *own.cluster_spacing_mm);
         if (own.cluster_radius_mm) check_positive("cluster_radius_mm of a region", *own.cluster_radius_mm);
         if (own.density_kg_mm3) check_positive("density_kg_mm3 of a region", *own.density_kg_mm3);
-        if (own.cluster_stiffness) check_stiffness(*own.cluster_stiffness);
+        if (own.cluster_stiffness) check_stiffness("cluster_stiffness of a region", *own.cluster_stiffness);
     }
 }
 
