@@ -31,7 +31,8 @@ Index CentrelineGraph::nearest(const Vec3& p) const {
 }
 
 std::vector<Index> CentrelineGraph::path(Index from, Index to) const {
-    if (from < 0 || to < 0 || nodes.empty()) return {};
+    const auto count = static_cast<Index>(nodes.size());
+    if (from < 0 || to < 0 || from >= count || to >= count) return {};
     const auto neighbours = adjacency();
     std::vector<double> distance(nodes.size(), std::numeric_limits<double>::infinity());
     std::vector<Index> previous(nodes.size(), -1);

@@ -72,7 +72,7 @@ double tan(double x) {
 
 double exp(double x) {
     if (std::isnan(x)) return nan;
-    if (x > 709.7) return inf;
+    if (x > 709.782712893384) return inf;  // log of the largest double
     if (x < -745.0) return 0.0;
     constexpr double ln2_high = 6.93147180369123816490e-01;  // low 32 bits zero
     constexpr double ln2_low = 1.90821492927058770002e-10;
@@ -108,18 +108,33 @@ double pow(double x, double y) {
 
 double atan(double x) {
     if (std::isnan(x)) return nan;
+    // atan x = atan c + atan((x - c) / (1 + x c)) with c the nearest eighth: the series then runs on |t| <= 1/16.
+    // Each atan c is the double next to it and what that leaves out.
+    static constexpr double centre[9][2] = {
+        {0.0, 0.0},
+        {0.12435499454676144, -3.1253241424539383e-18},
+        {0.24497866312686414, 1.0698755618734451e-17},
+        {0.35877067027057225, -2.4623815582638635e-17},
+        {0.4636476090008061, 2.2698777452961687e-17},
+        {0.5585993153435624, -5.4556305485916264e-18},
+        {0.6435011087932844, 1.5834785051444286e-17},
+        {0.7188299996216245, -2.1478388444456983e-17},
+        {0.7853981633974483, 3.061616997868383e-17},
+    };
+    constexpr double half_pi_high = 1.5707963267948966;
+    constexpr double half_pi_low = 6.123233995736766e-17;
     const double a = std::fabs(x);
-    if (a > 1.0) {
-        const double rest = pi / 2.0 - atan(1.0 / a);
-        return x < 0.0 ? -rest : rest;
-    }
-    // atan x = 2 atan(x / (1 + sqrt(1 + x^2))), twice: the series then runs on |t| <= tan(pi/16).
-    double t = x / (1.0 + std::sqrt(1.0 + x * x));
-    t = t / (1.0 + std::sqrt(1.0 + t * t));
+    const bool steep = a > 1.0;
+    const double y = steep ? 1.0 / a : a;
+    const int k = static_cast<int>(y * 8.0 + 0.5);
+    const double c = 0.125 * static_cast<double>(k);
+    const double t = (y - c) / (1.0 + y * c);
     const double t2 = t * t;
     double sum = 0.0;
-    for (int n = 25; n >= 3; n -= 2) sum = -(sum + 1.0 / static_cast<double>(n)) * t2;
-    return 4.0 * (t + t * sum);
+    for (int n = 15; n >= 3; n -= 2) sum = -(sum + 1.0 / static_cast<double>(n)) * t2;
+    const double small = centre[k][1] + (t + t * sum);
+    const double angle = steep ? (half_pi_high - centre[k][0]) + (half_pi_low - small) : centre[k][0] + small;
+    return x < 0.0 ? -angle : angle;
 }
 
 double atan2(double y, double x) {
@@ -165,12 +180,13 @@ Vec3 vector_from_rotation(const Quat& q) {
 
 Quat rotation_between(const Vec3& from, const Vec3& to) {
     const double w = 1.0 + from.dot(to);
-    if (w < 1e-12) {
+    const Vec3 c = from.cross(to);
+    if (c.squaredNorm() + w * w <
+        1e-16) {  // below this the cross product's rounding turns the axis by more than its angle
         Vec3 axis = std::fabs(from.x()) < 0.9 ? from.cross(Vec3::UnitX()) : from.cross(Vec3::UnitY());
         axis.normalize();
         return {0.0, axis.x(), axis.y(), axis.z()};
     }
-    const Vec3 c = from.cross(to);
     Quat q(w, c.x(), c.y(), c.z());
     q.normalize();
     return q;

@@ -46,6 +46,7 @@ public:
     T& add(Entity e, T component) {
         auto& table = this->template table<T>();
         CATHLAB_CHECK(!table.find(e), "entity '" + name(e) + "' has this component already");
+        if (table.rows.empty()) order_.push_back(&table);
         return table.insert(e, std::move(component));
     }
 
@@ -135,10 +136,7 @@ private:
     template <class T>
     Table<T>& table() {
         auto& slot = tables_[std::type_index(typeid(T))];
-        if (!slot) {
-            slot = std::make_unique<Table<T>>();
-            order_.push_back(slot.get());
-        }
+        if (!slot) slot = std::make_unique<Table<T>>();
         return static_cast<Table<T>&>(*slot);
     }
 
@@ -146,7 +144,8 @@ private:
     Workers workers_;
     std::vector<std::string> names_;
     std::map<std::type_index, std::unique_ptr<TableBase>> tables_;
-    std::vector<TableBase*> order_;  // order of first use: independent of addresses, unlike the map's
+    std::vector<TableBase*>
+        order_;  // order of the first add: independent of addresses, unlike the map's, and of who looked for what
 };
 
 }  // namespace cathlab
