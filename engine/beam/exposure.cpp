@@ -122,18 +122,20 @@ bool advance(const BeamSpec& spec, BeamState& state, const BeamCommand& command,
     state.primary_deg = towards(state.primary_deg, std::clamp(command.primary_deg, -180.0, 180.0), turn);
     state.secondary_deg = towards(state.secondary_deg, std::clamp(command.secondary_deg, -90.0, 90.0), turn);
     state.pedal = command.pedal;
-    state.kerma_rate_mgy_min = 0.0;
-    if (!command.pedal) return false;
+    if (!command.pedal) {
+        state.kerma_rate_mgy_min = 0.0;
+        return false;
+    }
 
     const double truth = std::isfinite(water_mm) ? std::clamp(water_mm, 0.0, 600.0) : state.water_mm;
     const double kept = spec.lag_s > 0.0 ? det::exp(-dt / spec.lag_s) : 0.0;
     state.water_mm = truth + kept * (state.water_mm - truth);
     state.beam_time_s += dt;
+    if (!pulse_in_step(step, dt, spec.pulses_per_s)) return false;
     const Pulse pulse = expose(spec, state.water_mm, truth);
     state.kvp = pulse.kvp;
     state.mas = pulse.mas;
     state.kerma_rate_mgy_min = 60.0 * spec.pulses_per_s * pulse.reference_kerma_mgy;
-    if (!pulse_in_step(step, dt, spec.pulses_per_s)) return false;
     state.detector_kerma_ngy = pulse.detector_kerma_ngy;
     state.air_kerma_mgy += pulse.reference_kerma_mgy;
     state.dose_area_gycm2 += pulse.dose_area_gycm2;

@@ -13,6 +13,29 @@ namespace {
 constexpr double first_kev = 20.5;  // below it nothing leaves the filters
 constexpr double joule_per_kev = 1.602176634e-16;
 
+// What the exposure control asks for at every pulse, once for each whole keV.
+struct Coefficients {
+    double water, aluminium, copper, caesium_iodide;  // 1/mm
+    double air;                                       // energy absorption, cm2/g
+};
+
+Coefficients coefficients_at(double energy_kev) {
+    return {attenuation_per_mm(material("water"), energy_kev), attenuation_per_mm(material("aluminium"), energy_kev),
+            attenuation_per_mm(material("copper"), energy_kev),
+            attenuation_per_mm(material("caesium_iodide"), energy_kev), air_energy_absorption_cm2_g(energy_kev)};
+}
+
+Coefficients coefficients(double energy_kev) {
+    static const std::vector<Coefficients> table = [] {
+        std::vector<Coefficients> out;
+        for (double e = first_kev; e < 150.0; e += 1.0) out.push_back(coefficients_at(e));
+        return out;
+    }();
+    const double place = energy_kev - first_kev;
+    const auto k = static_cast<std::size_t>(std::max(0.0, place));
+    return place == static_cast<double>(k) && k < table.size() ? table[k] : coefficients_at(energy_kev);
+}
+
 double water_per_mm(double energy_kev) {
     static const Material& water = material("water");
     return attenuation_per_mm(water, energy_kev);
@@ -23,7 +46,7 @@ double behind(const FineSpectrum& s, const std::vector<double>& weight, std::siz
               double water_mm) {
     double sum = 0.0;
     for (std::size_t i = begin; i < end; ++i)
-        sum += water_mm > 0.0 ? weight[i] * det::exp(-water_per_mm(s.energy_kev[i]) * water_mm) : weight[i];
+        sum += water_mm > 0.0 ? weight[i] * det::exp(-s.water_per_mm[i] * water_mm) : weight[i];
     return sum;
 }
 
@@ -37,8 +60,7 @@ double energy_of_water_attenuation(double per_mm, double low, double high) {
 
 std::vector<double> kerma_weights(const FineSpectrum& s) {
     std::vector<double> out;
-    for (std::size_t i = 0; i < s.photons.size(); ++i)
-        out.push_back(s.photons[i] * s.energy_kev[i] * air_energy_absorption_cm2_g(s.energy_kev[i]));
+    for (std::size_t i = 0; i < s.photons.size(); ++i) out.push_back(s.photons[i] * s.energy_kev[i] * s.air_cm2_g[i]);
     return out;
 }
 
@@ -46,9 +68,6 @@ std::vector<double> kerma_weights(const FineSpectrum& s) {
 
 FineSpectrum fine_spectrum(const SpectrumSpec& spec) {
     CATHLAB_CHECK(spec.kvp >= 40.0 && spec.kvp <= 150.0, "tube voltage 40 to 150 kV");
-    const Material& al = material("aluminium");
-    const Material& cu = material("copper");
-    const Material& csi = material("caesium_iodide");
     FineSpectrum out;
     double photons = 0.0, signal = 0.0, kerma = 0.0;
     // Steps of 1 keV; the last one is cut at the peak, so that the spectrum changes smoothly with the voltage.
@@ -56,16 +75,18 @@ FineSpectrum fine_spectrum(const SpectrumSpec& spec) {
         const double top = std::min(e + 0.5, spec.kvp);
         const double width = top - (e - 0.5);
         const double middle = 0.5 * (top + e - 0.5);
+        const Coefficients mu = coefficients(middle);
         const double n = width * (spec.kvp / middle - 1.0) *
-                         det::exp(-attenuation_per_mm(al, middle) * spec.aluminium_mm -
-                                  attenuation_per_mm(cu, middle) * spec.copper_mm);
-        const double absorbed = 1.0 - det::exp(-attenuation_per_mm(csi, middle) * spec.caesium_iodide_mm);
+                         det::exp(-mu.aluminium * spec.aluminium_mm - mu.copper * spec.copper_mm);
+        const double absorbed = 1.0 - det::exp(-mu.caesium_iodide * spec.caesium_iodide_mm);
+        out.water_per_mm.push_back(mu.water);
+        out.air_cm2_g.push_back(mu.air);
         out.energy_kev.push_back(middle);
         out.photons.push_back(n);
         out.signal.push_back(n * middle * absorbed);
         photons += n;
         signal += out.signal.back();
-        kerma += n * middle * air_energy_absorption_cm2_g(middle);
+        kerma += n * middle * mu.air;
     }
     out.total = photons;
     for (double& n : out.photons) n /= photons;

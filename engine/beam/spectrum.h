@@ -18,7 +18,9 @@ struct FineSpectrum {
     std::vector<double> energy_kev;
     std::vector<double> photons;  ///< sums to 1, at the exit of the tube
     std::vector<double> signal;   ///< energy deposited in the detector per such photon without a patient, sums to 1
-    double total = 0.0;           ///< what `photons` was before it was made to sum to 1; compares tube outputs per mAs
+    std::vector<double> water_per_mm;  ///< attenuation of water at those energies
+    std::vector<double> air_cm2_g;     ///< energy absorption of air at those energies
+    double total = 0.0;  ///< what `photons` was before it was made to sum to 1; compares tube outputs per mAs
     double kerma_per_photon = 0.0;  ///< air kerma per unit fluence at the tube's exit, nGy mm2
 };
 FineSpectrum fine_spectrum(const SpectrumSpec& spec);
