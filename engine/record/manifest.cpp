@@ -6,7 +6,7 @@ namespace cathlab {
 
 std::string manifest_json(const RunManifest& m) {
     const nlohmann::ordered_json out{{"schema", m.schema},
-                                     {"program_version", m.program_version},
+                                     {"version", m.version},
                                      {"scene", m.scene},
                                      {"overlays", m.overlays},
                                      {"scene_name", m.scene_name},
@@ -32,7 +32,7 @@ RunManifest parse_manifest(const std::string& text, const std::string& file) {
     fields.read("schema", m.schema);
     if (m.schema != 1)
         throw UserError({file, 0, "schema"}, "found " + std::to_string(m.schema) + "; this program reads 1");
-    fields.read("program_version", m.program_version);
+    fields.read("version", m.version);
     fields.read("scene", m.scene);
     fields.read("overlays", m.overlays);
     fields.read("scene_name", m.scene_name);

@@ -9,7 +9,7 @@ namespace cathlab {
 
 struct RunManifest {
     int schema = 1;
-    std::string program_version;
+    std::string version;                ///< of the program
     std::string scene;                  ///< path as it was given, relative to the data root where it lies there
     std::vector<std::string> overlays;  ///< in the order in which they were laid
     std::string scene_name;

@@ -24,13 +24,12 @@ std::string reason() {
     return std::strerror(errno);
 }
 
-void remove_earlier_run(const std::string& folder, bool replace) {
+void check_earlier_run(const std::string& folder, bool replace) {
     const fs::path manifest = fs::path(folder) / "manifest.json";
     if (!fs::exists(manifest))
         throw UserError(folder + ": the folder is not empty and holds no earlier run; choose another one");
     parse_manifest(read_text_file(manifest.string(), 1U << 20U), manifest.string());
     if (!replace) throw UserError(folder + ": holds an earlier run; choose another folder, or --force to replace it");
-    for (const char* name : run_file_names) fs::remove(fs::path(folder) / name);
 }
 
 }  // namespace
@@ -51,16 +50,30 @@ void write_whole_file(const std::string& path, const std::string& text) {
     }
 }
 
-void prepare_run_folder(const std::string& folder, bool replace) {
+void check_run_folder(const std::string& folder, bool replace) {
     std::error_code error;
-    if (fs::exists(folder, error) && !fs::is_directory(folder, error))
-        throw UserError(folder + ": is a file, a folder is wanted");
+    if (folder.empty()) throw UserError("the run folder has no name");
+    if (fs::exists(folder, error)) {
+        if (!fs::is_directory(folder, error)) throw UserError(folder + ": is a file, a folder is wanted");
+        const bool empty = fs::is_empty(folder, error);
+        if (error) throw UserError(folder + ": the folder cannot be read: " + error.message());
+        if (!empty) check_earlier_run(folder, replace);
+    }
+    fs::path standing = fs::absolute(folder).lexically_normal();
+    while (!fs::exists(standing, error) && standing.has_relative_path()) standing = standing.parent_path();
+    if (!fs::is_directory(standing, error))
+        throw UserError(folder + ": the folder cannot be made: " + standing.string() + " is a file");
+    if (::access(standing.c_str(), W_OK | X_OK) != 0)
+        throw UserError(folder + ": cannot be written to: " + standing.string() + ": " + reason());
+}
+
+void prepare_run_folder(const std::string& folder, bool replace) {
+    check_run_folder(folder, replace);
+    std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw UserError(folder + ": the folder cannot be made: " + error.message());
-    const bool empty = fs::is_empty(folder, error);
-    if (error) throw UserError(folder + ": the folder cannot be read: " + error.message());
-    if (!empty) remove_earlier_run(folder, replace);
-    if (::access(folder.c_str(), W_OK | X_OK) != 0) throw UserError(folder + ": cannot be written to: " + reason());
+    for (const char* name : run_file_names) fs::remove(fs::path(folder) / name, error);
+    if (error) throw UserError(folder + ": the earlier run cannot be removed: " + error.message());
 }
 
 LineFile::LineFile(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "wb")) {

@@ -26,6 +26,9 @@ void write_whole_file(const std::string& path, const std::string& text);
 /// others. Throws UserError where it cannot be made or written to.
 void prepare_run_folder(const std::string& folder, bool replace);
 
+/// The same questions without touching anything: for the start, before minutes are spent on building a world.
+void check_run_folder(const std::string& folder, bool replace);
+
 /// A file that grows by whole lines and survives a crash up to the last flush().  Every function throws UserError where
 /// the disk is full or the file cannot be written.
 class LineFile {

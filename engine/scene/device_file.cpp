@@ -33,7 +33,7 @@ Table<WireFile> make_wire_table() {
             .required()
             .number("friction", &WireSpec::friction, "1", {0, 2}, "Coulomb coefficient against the wall")
             .number("max_push_n", &WireSpec::max_push_n, "N", {1e-3, 1e3}, "axial force at which the drive slips")
-            .number("max_speed", &WireSpec::max_speed, "mm/s", {1e-3, 1e3}, "of the drive")
+            .number("max_speed_mm_s", &WireSpec::max_speed, "mm/s", {1e-3, 1e3}, "of the drive")
             .number("damping_per_s", &WireSpec::damping_per_s, "1/s", {0, 1e5},
                     "rate at which motion against resting blood dies out")
             .number("spin_damping_per_s", &WireSpec::spin_damping_per_s, "1/s", {0, 1e5}, "the same for turning")

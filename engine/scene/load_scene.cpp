@@ -58,7 +58,7 @@ void check_anatomy(const SceneAnatomy& anatomy) {
         throw UserError(anatomy.where, mesh ? "has both 'file' and 'mesh'; one of them is wanted"
                                             : "needs 'file' (a parametric anatomy) or 'mesh' (an imported one)");
     if (mesh && anatomy.imported.entries.empty())
-        throw UserError(anatomy.where, "a mesh needs at least one [[anatomy.entry]] with name and position_mm");
+        throw UserError(anatomy.where, "a mesh needs at least one [[anatomy.entry]] with name and near");
     if (mesh && !anatomy.stenoses.empty())
         throw UserError(anatomy.stenoses.front().where,
                         "a stenosis can be put into a parametric anatomy alone, not into a mesh");

@@ -1,5 +1,7 @@
 #include "scene/scene_table.h"
 
+#include "scene/anatomy_file.h"
+
 namespace cathlab {
 namespace {
 
@@ -19,47 +21,7 @@ Table<SceneStep> step_table() {
                 "the drive slips while the wire is pressed in deeper than this");
 }
 
-Table<ImportedEntry> entry_table(const std::string& doc) {
-    return Table<ImportedEntry>(doc)
-        .text("name", &ImportedEntry::name, "its name")
-        .required()
-        .vec3("position_mm", &ImportedEntry::near, "mm", world_mm,
-              "a point near it in the mesh's own frame, scaled to mm; snapped to the centre-line")
-        .required()
-        .number("inset_mm", &ImportedEntry::inset_mm, "mm", {0, 100},
-                "how far inside the vessel's end the mouth stands")
-        .place(&ImportedEntry::where);
-}
-
-Table<ImportedAnatomySpec> imported_table() {
-    const auto fixed = Table<ImportedFixed>("the wall of an imported mesh is held within a ball, beside its ends")
-                           .text("name", &ImportedFixed::name, "its name")
-                           .required()
-                           .vec3("position_mm", &ImportedFixed::center, "mm", world_mm, "centre of the ball")
-                           .required()
-                           .number("radius_mm", &ImportedFixed::radius_mm, "mm", {0.1, 500}, "radius of the ball")
-                           .place(&ImportedFixed::where);
-    const auto annulus = Table<ImportedAnnulus>("the ring where an imported aorta meets the heart")
-                             .vec3("position_mm", &ImportedAnnulus::center, "mm", world_mm, "centre of the ring")
-                             .required()
-                             .vec3("axis", &ImportedAnnulus::axis, "1", {-1, 1}, "from the ventricle into the aorta")
-                             .required()
-                             .number("radius_mm", &ImportedAnnulus::radius_mm, "mm", {1, 50}, "radius of the ring");
-    return Table<ImportedAnatomySpec>("an imported mesh")
-        .path("mesh", &ImportedAnatomySpec::mesh, "a closed surface: OBJ, STL, PLY, GLB or glTF")
-        .choice("unit", &ImportedAnatomySpec::unit, {"mm", "cm", "m"}, "unit of the mesh's coordinates")
-        .number("wall_thickness_mm", &ImportedAnatomySpec::wall_thickness_mm, "mm", {0.1, 5}, "of an imported mesh")
-        .number("force_limit_n", &ImportedAnatomySpec::force_limit_n, "N", {0.01, 100},
-                "largest force allowed on an imported mesh (force bar = 1)")
-        .tables("entry", &ImportedAnatomySpec::entries,
-                entry_table("a place of an imported mesh where a device enters"))
-        .tables("landmark", &ImportedAnatomySpec::landmarks, entry_table("a named place of an imported mesh"))
-        .tables("fixed", &ImportedAnatomySpec::fixed, fixed)
-        .table("annulus", &ImportedAnatomySpec::annulus, annulus)
-        .place(&ImportedAnatomySpec::where);
-}
-
-Table<SceneAnatomy> anatomy_table() {
+Table<SceneAnatomy> anatomy_section() {
     const auto stenosis =
         Table<StenosisSpec>("a narrowing of a vessel of a parametric anatomy")
             .text("vessel", &StenosisSpec::vessel, "name of the vessel")
@@ -73,8 +35,9 @@ Table<SceneAnatomy> anatomy_table() {
             .place(&StenosisSpec::where);
     return Table<SceneAnatomy>("the vessels: either a parametric file or an imported mesh")
         .path("file", &SceneAnatomy::file, "a parametric anatomy", "assets/anatomy")
-        .include(&SceneAnatomy::imported, imported_table())
-        .integer("face_count", &SceneAnatomy::face_count, "1", {0, 500000},
+        .include(&SceneAnatomy::imported, imported_anatomy_table())
+        .optional("mesh")
+        .integer("face_count", &SceneAnatomy::face_count, "1", {0, 2e6},
                  "triangles of the lumen surface; 0 = as the anatomy says")
         .tables("stenosis", &SceneAnatomy::stenoses, stenosis)
         .place(&SceneAnatomy::where);
@@ -198,7 +161,7 @@ Table<SceneSpec> make_scene_table() {
         .number("duration_s", &SceneSpec::duration_s, "s", {0.001, 86400}, "simulated time of a run")
         .path("script", &SceneSpec::script, "what the operator does: a CSV file t_s,action,value")
         .table("step", &SceneSpec::step, step_table())
-        .table("anatomy", &SceneSpec::anatomy, anatomy_table())
+        .table("anatomy", &SceneSpec::anatomy, anatomy_section())
         .required()
         .table("wall", &SceneSpec::wall, wall_table())
         .table("heart", &SceneSpec::heart, heart_table())

@@ -285,6 +285,12 @@ public:
         spec_.fields.back().required = true;
         return *this;
     }
+    /// Takes required() back, for a section that includes another's fields.
+    Table& optional(const std::string& key) {
+        for (FieldSpec& f : spec_.fields)
+            if (f.key == key) f.required = false;
+        return *this;
+    }
     /// For what the members above do not cover.
     Table& field(FieldSpec spec) {
         spec_.fields.push_back(std::move(spec));

@@ -35,7 +35,7 @@ class RunFolder : public testing::Test {
 protected:
     RunManifest manifest() const {
         RunManifest m;
-        m.program_version = "0.1.0";
+        m.version = "0.1.0";
         m.scene = "scenes/a \"quoted\".toml";
         m.overlays = {"x.toml"};
         m.scene_hash = 0xFEDCBA9876543210ULL;
