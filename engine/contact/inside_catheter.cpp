@@ -1,0 +1,69 @@
+#include "contact/inside_catheter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "core/check.h"
+
+namespace cathlab {
+namespace {
+
+constexpr double window_mm = 10.0;
+
+struct Foot {
+    Vec3 point;
+    Vec3 tangent;
+};
+
+Foot nearest_foot(const CatheterBore& bore, const Vec3& p, double arc) {
+    const auto begin = static_cast<std::size_t>(std::lower_bound(bore.arc.begin(), bore.arc.end(), arc - window_mm) -
+                                                bore.arc.begin());
+    Foot best{bore.points.back(), Vec3::UnitZ()};
+    double best_distance = std::numeric_limits<double>::infinity();
+    for (std::size_t i = begin == 0 ? 0 : begin - 1; i + 1 < bore.points.size(); ++i) {
+        if (bore.arc[i] > arc + window_mm) break;
+        const Vec3 edge = bore.points[i + 1] - bore.points[i];
+        const double length2 = edge.squaredNorm();
+        if (length2 == 0.0) continue;
+        const double t = std::clamp((p - bore.points[i]).dot(edge) / length2, 0.0, 1.0);
+        const Vec3 foot = bore.points[i] + t * edge;
+        const double d = (p - foot).squaredNorm();
+        if (d < best_distance) {
+            best_distance = d;
+            best = {foot, edge / std::sqrt(length2)};
+        }
+    }
+    return best;
+}
+
+}  // namespace
+
+bool inside_bore(const CatheterBore& bore, double arc_of_sample) {
+    return bore.arc.size() >= 2 && arc_of_sample >= 0.0 && arc_of_sample <= bore.arc.back();
+}
+
+void add_bore_rows(const CatheterBore& bore, std::span<const RodSample> samples, std::span<const double> arc_of_sample,
+                   double compliance, std::vector<ChainRow>& rows) {
+    CATHLAB_CHECK(samples.size() == arc_of_sample.size(), "one arc length a sample");
+    CATHLAB_CHECK(bore.points.size() == bore.arc.size(), "one arc length a point of the bore");
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (!inside_bore(bore, arc_of_sample[i])) continue;
+        const Foot foot = nearest_foot(bore, samples[i].position, arc_of_sample[i]);
+        Vec3 away = samples[i].position - foot.point;
+        away -= away.dot(foot.tangent) * foot.tangent;
+        const double offset = std::sqrt(away.squaredNorm());
+        if (offset < 0.5 * bore.clearance_mm || offset < 1e-9) continue;  // on the axis there is nothing to push back
+        ChainRow row;
+        row.link = samples[i].link;
+        row.arm = samples[i].arm;
+        row.normal = -away / offset;
+        row.gap = bore.clearance_mm - offset;
+        row.compliance = compliance;
+        row.friction = bore.friction;
+        rows.push_back(row);
+    }
+}
+
+}  // namespace cathlab

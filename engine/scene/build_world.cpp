@@ -1,0 +1,243 @@
+#include "scene/build_world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "anatomy/build.h"
+#include "catheter/motion.h"
+#include "catheter/mount.h"
+#include "contact/lumen_surface.h"
+#include "core/units.h"
+#include "heart/motion.h"
+#include "rod/rod.h"
+#include "scene/anatomy_file.h"
+#include "scene/device_file.h"
+#include "softbody/binding.h"
+#include "softbody/solver.h"
+#include "softbody/wall_sample.h"
+#include "world/step_settings.h"
+
+namespace cathlab {
+
+struct SceneModels {
+    Shared<AnatomyModel> anatomy;
+    Shared<SoftBodyModel> wall;
+    Shared<LumenSurfaceModel> surface;
+};
+
+namespace {
+
+// Particles over which a vertex of the lumen surface spreads its force.
+constexpr int surface_particles = 10;
+
+AnatomyModel get_anatomy(const SceneSpec& spec, const BuildOptions& options, const Workers& workers) {
+    const auto progress = [&](double fraction, std::string_view what) {
+        if (options.progress) options.progress(0.6 * fraction, what);
+    };
+    if (!spec.anatomy.imported.mesh.empty())
+        return load_or_build(spec.anatomy.imported, options.cache_folder, workers, progress);
+    AnatomySpec anatomy = load_anatomy(spec.anatomy.file);
+    anatomy.stenoses.insert(anatomy.stenoses.end(), spec.anatomy.stenoses.begin(), spec.anatomy.stenoses.end());
+    if (spec.anatomy.face_count > 0) anatomy.meshing.face_count = spec.anatomy.face_count;
+    return load_or_build(anatomy, options.cache_folder, workers, progress);
+}
+
+Index find_region(const AnatomyModel& anatomy, const SceneWallRegion& wanted) {
+    std::vector<std::string> names;
+    for (const Region& region : anatomy.regions) names.push_back(region.name);
+    const auto it = std::find(names.begin(), names.end(), wanted.name);
+    if (it == names.end())
+        throw UserError(wanted.where, "the anatomy has no region '" + wanted.name + "'; it has " + comma_list(names) +
+                                          did_you_mean(wanted.name, names));
+    return static_cast<Index>(it - names.begin());
+}
+
+void override_regions(const SceneSpec& spec, AnatomyModel& anatomy, WallParameters& parameters) {
+    // The scene's spacing is the aorta's; regions that ask for less keep asking for less.
+    for (Region& region : anatomy.regions)
+        region.particle_spacing_mm = std::min(region.particle_spacing_mm, spec.wall.particle_spacing_mm);
+    for (const SceneWallRegion& wanted : spec.wall.regions) {
+        const Index index = find_region(anatomy, wanted);
+        Region& region = anatomy.regions[static_cast<std::size_t>(index)];
+        if (wanted.particle_spacing_mm) region.particle_spacing_mm = *wanted.particle_spacing_mm;
+        if (wanted.wall_thickness_mm) region.wall_thickness_mm = *wanted.wall_thickness_mm;
+        if (wanted.force_limit_n) region.force_limit_n = *wanted.force_limit_n;
+        parameters.regions.push_back(
+            {index, wanted.cluster_spacing_mm, wanted.cluster_radius_mm, wanted.cluster_stiffness, {}});
+    }
+}
+
+Shared<SoftBodyModel> build_wall(const SceneSpec& spec, AnatomyModel& anatomy) {
+    WallParameters parameters;
+    parameters.density_kg_mm3 = spec.wall.density_kg_m3 * 1e-9;
+    parameters.cluster_spacing_mm = spec.wall.cluster_spacing_mm;
+    parameters.cluster_radius_mm = spec.wall.cluster_radius_mm;
+    parameters.cluster_stiffness = spec.wall.cluster_stiffness;
+    parameters.damping_per_s = spec.wall.damping_per_s;
+    parameters.reference_spacing_mm = spec.wall.particle_spacing_mm;
+    override_regions(spec, anatomy, parameters);
+
+    std::vector<double> wanted;
+    std::vector<double> thickness;
+    for (const Region& region : anatomy.regions) thickness.push_back(region.wall_thickness_mm);
+    for (const Index region : anatomy.fine_region)
+        wanted.push_back(anatomy.regions[static_cast<std::size_t>(region)].particle_spacing_mm);
+    const std::vector<double> spacing = lumen_spacing(wanted, anatomy.fine_radius);
+    const WallSample sample = sample_wall(anatomy.fine, anatomy.fine_region, spacing, thickness, 1);
+    const auto is_fixed = [&](const Vec3& p) {
+        return std::any_of(anatomy.fixed.begin(), anatomy.fixed.end(),
+                           [&](const FixedZone& zone) { return zone.contains(p); });
+    };
+    return std::make_shared<const SoftBodyModel>(build_soft_body(sample, parameters, is_fixed));
+}
+
+const EntrySite& find_entry(const AnatomyModel& anatomy, const SceneDevice& device) {
+    std::vector<std::string> names;
+    for (const EntrySite& entry : anatomy.entries) {
+        if (entry.name == device.entry) return entry;
+        names.push_back(entry.name);
+    }
+    throw UserError(device.where, "the anatomy has no entry site '" + device.entry + "'; it has " + comma_list(names) +
+                                      did_you_mean(device.entry, names));
+}
+
+void check_width(const EntrySite& entry, double radius_mm, const SceneDevice& device) {
+    if (radius_mm >= entry.radius_mm)
+        throw UserError(device.where, "the device is " + std::to_string(2.0 * radius_mm) +
+                                          " mm wide and the vessel at '" + entry.name + "' only " +
+                                          std::to_string(2.0 * entry.radius_mm) + " mm");
+}
+
+// The way in from an entry: towards the heart where there is one, otherwise to the end that is farthest.
+std::vector<Vec3> way_in(const AnatomyModel& anatomy, const EntrySite& entry) {
+    const CentrelineGraph& graph = anatomy.centreline;
+    std::vector<Index> path;
+    if (anatomy.annulus) {
+        path = graph.path(entry.node, graph.nearest(anatomy.annulus->pose.position));
+    } else {
+        double longest = 0.0;
+        const auto neighbours = graph.adjacency();
+        for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+            if (neighbours[i].size() != 1) continue;
+            std::vector<Index> candidate = graph.path(entry.node, static_cast<Index>(i));
+            const double length = graph.length(candidate);
+            if (length > longest) {
+                longest = length;
+                path = std::move(candidate);
+            }
+        }
+    }
+    std::vector<Vec3> points{entry.pose.position};
+    const Vec3 inward = entry.pose.orientation * Vec3::UnitZ();
+    for (const Index node : path) {
+        const Vec3& p = graph.nodes[static_cast<std::size_t>(node)].position;
+        if ((p - entry.pose.position).dot(inward) > 1.0 || points.size() > 1) points.push_back(p);
+    }
+    return points;
+}
+
+void add_wire(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) {
+    WireSpec wire = load_wire(spec.wire.device);
+    wire.friction = spec.wall.friction;
+    const EntrySite& entry = find_entry(anatomy, spec.wire);
+    for (const WireSection& section : wire.sections) check_width(entry, 0.5 * section.diameter_mm, spec.wire);
+    const SheathPose sheath{entry.pose, 60.0};
+    Rod rod(wire, sheath, spec.wire.insertion_mm, way_in(anatomy, entry));
+    world.add(world.create(wire_entity), std::move(rod));
+}
+
+void add_catheter(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) {
+    CatheterSpec catheter = load_catheter(spec.catheter.device);
+    catheter.friction = spec.wall.friction;
+    const EntrySite& entry = find_entry(anatomy, spec.catheter);
+    check_width(entry, catheter.radius_mm(), spec.catheter);
+    const Entity e = world.create(catheter_entity);
+    world.add(e, CatheterMount{entry.pose, entry.node, spec.catheter.follow == "wire"});
+    world.add(e, initial_state(catheter, spec.catheter.insertion_mm));
+    world.add(e, std::move(catheter));
+}
+
+HeartSpec heart_spec(const SceneSpec& spec, const AnatomyModel& anatomy) {
+    HeartSpec heart;
+    heart.rate_bpm = spec.heart.rate_bpm;
+    heart.radius_mm = spec.heart.radius_mm > 0.0 ? spec.heart.radius_mm : 1.5 * anatomy.annulus->radius_mm;
+    if (!spec.heart.profile.empty()) {
+        heart.knots.clear();
+        for (const auto& [phase, displacement] : spec.heart.profile) heart.knots.push_back({phase, displacement});
+    }
+    if (spec.heart.excursion_mm > 0.0) {
+        double least = heart.knots.front().displacement_mm;
+        double most = least;
+        for (const HeartKnot& knot : heart.knots) {
+            least = std::min(least, knot.displacement_mm);
+            most = std::max(most, knot.displacement_mm);
+        }
+        for (HeartKnot& knot : heart.knots)
+            knot.displacement_mm =
+                most > least ? (knot.displacement_mm - least) * spec.heart.excursion_mm / (most - least) : 0.0;
+    }
+    validate(heart, spec.heart.where);
+    return heart;
+}
+
+}  // namespace
+
+std::shared_ptr<const SceneModels> build_models(const SceneSpec& spec, const BuildOptions& options) {
+    const Workers workers(options.threads);
+    const auto report = [&](double fraction, std::string_view what) {
+        if (options.progress) options.progress(fraction, what);
+    };
+    auto anatomy = std::make_shared<AnatomyModel>(get_anatomy(spec, options, workers));
+    auto models = std::make_shared<SceneModels>();
+    report(0.6, "wall");
+    models->wall = build_wall(spec, *anatomy);
+    report(0.9, "surface");
+    PointBinding binding =
+        bind_points(*models->wall, anatomy->lumen.vertices, surface_particles, true, vertex_normals(anatomy->lumen));
+    models->surface = std::make_shared<const LumenSurfaceModel>(
+        build_lumen_surface(anatomy->lumen, anatomy->lumen_region, anatomy->lumen_radius, std::move(binding)));
+    models->anatomy = std::move(anatomy);
+    report(1.0, "ready");
+    return models;
+}
+
+std::unique_ptr<World> build_world(const SceneSpec& spec, const SceneModels& models, std::uint64_t seed, int threads) {
+    auto world = std::make_unique<World>(seed, Workers(threads));
+    const Entity top = world->create(world_entity);
+    world->add(top,
+               StepSettings{spec.step.dt_s, spec.step.substeps, spec.step.iterations, spec.step.contact_margin_mm,
+                            spec.step.sample_spacing_mm, spec.force.filter_s, spec.step.wire_penetration_limit_mm});
+    const Entity vessel = world->create(vessel_entity);
+    world->add(vessel, models.anatomy);
+    world->add(vessel, models.wall);
+    world->add(vessel, models.surface);
+    world->add(vessel, rest_state(*models.wall));
+
+    if (spec.wire.enabled) add_wire(*world, spec, *models.anatomy);
+    if (spec.catheter.enabled) add_catheter(*world, spec, *models.anatomy);
+    if (spec.heart.enabled) {
+        if (!models.anatomy->annulus)
+            throw UserError(spec.heart.where, "the heart is enabled, but the anatomy '" + models.anatomy->name +
+                                                  "' declares no annulus for it to push");
+        const Entity heart = world->create(heart_entity);
+        HeartSpec built = heart_spec(spec, *models.anatomy);
+        world->add(heart, initial_state(built));
+        world->add(heart, std::move(built));
+    }
+    for (const SceneEffect& effect : spec.effects) {
+        if (!effect.enabled) continue;
+        const Entity e = world->create("effect." + std::string(effect.info->name));
+        world->add(e, ActiveEffect{effect.info, effect.info->make(effect.values)});
+    }
+    return world;
+}
+
+std::unique_ptr<World> build_world(const SceneSpec& spec, const BuildOptions& options) {
+    return build_world(spec, *build_models(spec, options), spec.seed, options.threads);
+}
+
+std::uint64_t anatomy_hash(const SceneModels& models) {
+    return models.anatomy->content_hash;
+}
+
+}  // namespace cathlab

@@ -1,0 +1,200 @@
+#include "step/devices.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/deterministic_math.h"
+#include "core/units.h"
+
+namespace cathlab {
+namespace {
+
+// Material arc length from the wire's tip of the centre of every link.
+std::vector<double> link_centres(const Rod& wire) {
+    std::vector<double> centre(wire.link_count());
+    double start = 0.0;
+    for (std::size_t i = 0; i < centre.size(); ++i) {
+        centre[i] = start + 0.5 * wire.link_length(i);
+        start += wire.link_length(i);
+    }
+    return centre;
+}
+
+Vec3 point_at(const CatheterShape& shape, double arc) {
+    if (arc <= shape.arc.front()) return shape.points.front();
+    if (arc >= shape.arc.back()) return shape.points.back();
+    const auto it = std::upper_bound(shape.arc.begin(), shape.arc.end(), arc);
+    const auto i = static_cast<std::size_t>(it - shape.arc.begin());
+    const double t = (arc - shape.arc[i - 1]) / (shape.arc[i] - shape.arc[i - 1]);
+    return shape.points[i - 1] + t * (shape.points[i] - shape.points[i - 1]);
+}
+
+Rail current_rail(const Parts& p) {
+    const CatheterRoute& route = *p.catheter_route;
+    Rail rail = build_rail(route.graph, p.centreline->positions, p.catheter_state->route, p.mount->mouth);
+    if (p.mount->follow_wire && p.wire) {
+        const std::vector<Vec3> line = p.wire->polyline();
+        std::vector<Vec3> nodes{p.mount->mouth.position};
+        const double mouth_arc = p.wire->insertion_mm();
+        double arc = 0.0;
+        std::size_t last = 0;
+        for (; last + 1 < line.size() && arc < mouth_arc - 2.0; ++last)
+            arc += std::sqrt((line[last + 1] - line[last]).squaredNorm());
+        for (std::size_t i = last; i-- > 0;) nodes.push_back(line[i]);
+        if (nodes.size() > 2) {
+            const Rail wire_rail = build_rail(p.mount->mouth, nodes, {});
+            rail = blend(rail, wire_rail, wire_lead(mouth_arc, base_arc_mm(*p.catheter, *p.catheter_state)));
+        }
+    }
+    return rail;
+}
+
+// Rows of the last substep, seen from where the catheter stands now.
+std::vector<WallLimit> wall_limits(const Parts& p, const CatheterShape& now) {
+    std::vector<WallLimit> limits;
+    const auto rows = p.contacts->rows();
+    const auto wall = p.contacts->wall_rows();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (wall[i].device != catheter_device) continue;
+        const auto from_tip = static_cast<std::size_t>(std::floor(wall[i].arc_mm / catheter_spacing_mm + 0.5));
+        if (from_tip >= now.points.size()) continue;
+        const std::size_t point = now.points.size() - 1 - from_tip;
+        WallLimit limit;
+        limit.point = static_cast<Index>(point);
+        limit.normal = rows[i].normal;
+        limit.gap = rows[i].normal.dot(now.points[point] - wall[i].point) - wall[i].radius;
+        limit.force = rows[i].multiplier;
+        limit.penetration_limit = p.catheter->penetration_limit_mm;
+        limit.force_limit = p.catheter->force_limit_n * units::newton;
+        limits.push_back(limit);
+    }
+    return limits;
+}
+
+}  // namespace
+
+double drive_fraction(const Rod& wire, const WireDrive& drive, const StepSettings& settings, double advance_mm,
+                      double contact_limit_mn) {
+    const double limit = wire.spec().max_push_n * units::newton;
+    const double reaction = advance_mm > 0.0 ? wire.sheath_force_mn() : -wire.sheath_force_mn();
+    double fraction = std::clamp((limit - reaction) / (0.2 * limit), 0.0, 1.0);
+    if (advance_mm > 0.0) {
+        const double depth = settings.wire_penetration_limit_mm;
+        fraction = std::min(fraction, std::clamp((depth - drive.penetration_mm) / (0.5 * depth), 0.0, 1.0));
+        fraction =
+            std::min(fraction, std::clamp((contact_limit_mn - drive.contact_mn) / (0.2 * contact_limit_mn), 0.0, 1.0));
+    }
+    return fraction;
+}
+
+void settle_catheter(Parts& p) {
+    p.catheter_route->shape = shape(*p.catheter, *p.catheter_state, current_rail(p));
+}
+
+double move_catheter(Parts& p, const Input& input, double h) {
+    CatheterState& state = *p.catheter_state;
+    CatheterRoute& route = *p.catheter_route;
+    const std::vector<Vec3> guide = steering_guide(*p.catheter, route.shape);
+    update_route(route.graph, p.centreline->positions, guide, base_arc_mm(*p.catheter, state), state.route);
+    const Rail rail = current_rail(p);
+    const CatheterShape start = shape(*p.catheter, state, rail);
+
+    CatheterCommand command;
+    const bool selected = input.device >= 0.5;
+    command.advance_mm = selected ? input.advance * h : 0.0;
+    command.rotate_rad = selected ? input.rotate * units::deg * h : 0.0;
+    command.bend_rad = {input.proximal_bend * units::deg, input.distal_bend * units::deg};
+    command.direction_rad = {input.proximal_direction * units::deg, input.distal_direction * units::deg};
+    command.bend_rad.resize(p.catheter->segments.size(), 0.0);
+    command.direction_rad.resize(p.catheter->segments.size(), 0.0);
+
+    const double steerable = p.catheter->steerable_length_mm();
+    const double limit = insertion_limit(route.graph, p.centreline->positions, state.route, steerable + 60.0);
+    const std::vector<WallLimit> limits = wall_limits(p, start);
+    CatheterTaken taken = take(*p.catheter, state, command, rail, limits, h, limit);
+    state = taken.state;
+    route.shape = std::move(taken.shape);
+    return taken.refused;
+}
+
+CatheterBore catheter_bore(const Parts& p) {
+    if (!p.catheter || !p.wire || p.catheter->inner_diameter_mm <= 0.0) return {};
+    const CatheterShape& shape = p.catheter_route->shape;
+    const double wire_radius = p.wire->link_radius(p.wire->link_count() - 1);
+    return {shape.points, shape.arc, std::max(0.0, 0.5 * p.catheter->inner_diameter_mm - wire_radius), 0.05};
+}
+
+void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceSamples& samples) {
+    samples.wire.clear();
+    samples.wire_arc.clear();
+    samples.wire_free.clear();
+    samples.link_before.clear();
+    samples.list.clear();
+    if (p.wire) {
+        const Rod& wire = *p.wire;
+        wire.samples(p.settings->sample_spacing_mm, samples.wire);
+        const std::vector<double> centre = link_centres(wire);
+        for (std::size_t i = 0; i < wire.link_count(); ++i)
+            samples.link_before.push_back(wire.link_pose(i).orientation);
+        const CatheterBore bore = catheter_bore(p);
+        for (std::size_t i = 0; i < samples.wire.size(); ++i) {
+            const RodSample& s = samples.wire[i];
+            const auto link = static_cast<std::size_t>(s.link);
+            const double arc = centre[link] - s.arm.dot(samples.link_before[link] * Vec3::UnitZ());
+            samples.wire_arc.push_back(arc);
+            if (inside_bore(bore, wire.insertion_mm() - arc)) continue;
+            samples.wire_free.push_back(i);
+            DeviceSample d;
+            d.position = s.position;
+            d.previous = s.position;
+            d.radius = s.radius;
+            d.device = wire_device;
+            d.arc_mm = arc;
+            d.link = s.link;
+            d.arm = s.arm;
+            d.friction = wire.spec().friction;
+            samples.list.push_back(d);
+        }
+    }
+    if (p.catheter) {
+        const CatheterShape& now = p.catheter_route->shape;
+        for (std::size_t k = 0; k < now.points.size(); ++k) {
+            const std::size_t i = now.points.size() - 1 - k;        // from the tip
+            if (now.arc[i] < p.catheter->outer_diameter_mm) break;  // the sheath's mouth holds what is beside it
+            const double from_tip = now.arc.back() - now.arc[i];
+            DeviceSample d;
+            d.position = now.points[i];
+            d.previous = point_at(catheter_before, catheter_before.arc.back() - from_tip);
+            d.radius = p.catheter->radius_mm();
+            d.device = catheter_device;
+            d.arc_mm = from_tip;
+            d.friction = p.catheter->friction;
+            d.kinematic = true;
+            samples.list.push_back(d);
+        }
+    }
+}
+
+void refresh_samples(const Parts& p, DeviceSamples& samples) {
+    if (!p.wire) return;
+    const Rod& wire = *p.wire;
+    std::vector<Pose> pose(wire.link_count());
+    std::vector<Quat> turn(wire.link_count());
+    std::vector<Vec3> rotation(wire.link_count());
+    for (std::size_t i = 0; i < pose.size(); ++i) {
+        pose[i] = wire.link_pose(i);
+        turn[i] = pose[i].orientation * samples.link_before[i].conjugate();
+        rotation[i] = det::vector_from_rotation(turn[i]);
+    }
+    // The list keeps the sample's place in the link's own frame: arm_now = turn * arm_before.
+    for (std::size_t k = 0; k < samples.wire_free.size(); ++k) {
+        const RodSample& s = samples.wire[samples.wire_free[k]];
+        const auto link = static_cast<std::size_t>(s.link);
+        DeviceSample& d = samples.list[k];
+        d.arm = turn[link] * s.arm;
+        d.position = pose[link].position + d.arm;
+        d.rotation = rotation[link];
+    }
+}
+
+}  // namespace cathlab

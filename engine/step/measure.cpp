@@ -1,0 +1,106 @@
+#include "step/measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+#include "softbody/observe.h"
+#include "step/devices.h"
+
+namespace cathlab {
+namespace {
+
+void put(double& x, double& y, double& z, const Vec3& p) {
+    x = p.x();
+    y = p.y();
+    z = p.z();
+}
+
+void measure_wire(const Parts& p, const StepSums& sums, double n, Channels& c) {
+    c.wire_insertion_mm = p.wire->insertion_mm();
+    c.wire_rotation_deg = p.wire->rotation_rad() / units::deg;
+    put(c.wire_tip_x_mm, c.wire_tip_y_mm, c.wire_tip_z_mm, p.wire->tip());
+    c.wire_force_mn = sums.wire_mn / n;
+    c.wire_tip_force_mn = sums.wire_tip_mn / n;
+    c.wire_sheath_force_mn = sums.wire_sheath_mn / n;
+    c.wire_contacts = static_cast<double>(sums.wire_contacts);
+    c.wire_penetration_mm = sums.wire_penetration_mm;
+    c.wire_stretch_max = p.wire->max_stretch();
+    c.wire_refused_mm = p.wire_drive->refused_mm;
+    if (std::fabs(sums.wire_refused_mm) > 0.0)
+        p.event("refused", wire_entity, "the drive of the guidewire slipped (mm not taken)", sums.wire_refused_mm);
+}
+
+void measure_catheter(const Parts& p, const StepSums& sums, double n, Channels& c) {
+    const CatheterState& state = *p.catheter_state;
+    c.catheter_insertion_mm = state.insertion_mm;
+    c.catheter_rotation_deg = state.rotation_rad / units::deg;
+    if (!state.bend_rad.empty()) c.catheter_proximal_bend_deg = state.bend_rad.front() / units::deg;
+    if (state.bend_rad.size() > 1) c.catheter_distal_bend_deg = state.bend_rad.back() / units::deg;
+    put(c.catheter_tip_x_mm, c.catheter_tip_y_mm, c.catheter_tip_z_mm, p.catheter_route->shape.tip.position);
+    c.catheter_force_mn = sums.catheter_mn / n;
+    c.catheter_tip_force_mn = sums.catheter_tip_mn / n;
+    c.catheter_contacts = static_cast<double>(sums.catheter_contacts);
+    c.catheter_penetration_mm = sums.catheter_penetration_mm;
+    c.catheter_refused = sums.catheter_refused;
+    if (sums.catheter_refused > 0.0)
+        p.event("refused", catheter_entity, "the wall took a part of the catheter's command only (part refused)",
+                sums.catheter_refused);
+}
+
+// Points outside the lumen by more than their radius, from the rows: a sample with no row is further inside than the
+// margin.
+double count_outside(const Parts& p) {
+    double outside = 0.0;
+    const auto rows = p.contacts->rows();
+    const auto wall = p.contacts->wall_rows();
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (rows[i].gap < -2.0 * wall[i].radius) outside += 1.0;
+    return outside;
+}
+
+}  // namespace
+
+void measure(Parts& p, const Input& /*input*/, const StepSums& sums, Channels& c) {
+    p.stage("measure");
+    const double n = static_cast<double>(sums.substeps);
+    c.time_s = p.world->time_s;
+    if (p.wire) measure_wire(p, sums, n, c);
+    if (p.catheter) measure_catheter(p, sums, n, c);
+
+    // The force bar's rule: counted while a tip is in contact, along that device's whole shaft.
+    const bool touching = sums.tip_region >= 0;
+    if (touching) p.force_bar->limit_n = p.anatomy->regions[static_cast<std::size_t>(sums.tip_region)].force_limit_n;
+    const double shaft = !touching ? 0.0 : (sums.tip_device == wire_device ? sums.wire_mn : sums.catheter_mn) / n;
+    const double last = c.force_bar;
+    c.force_bar_n = p.force_bar->add(shaft);
+    c.force_limit_n = p.force_bar->limit_n;
+    c.force_bar = c.force_bar_n / c.force_limit_n;
+    if (c.force_bar >= 1.0 && last < 1.0)
+        p.event("limit", sums.tip_device == wire_device ? wire_entity : catheter_entity,
+                "the force bar passed the region's limit (N)", c.force_bar_n);
+
+    c.outside_count = count_outside(p);
+    c.momentum_residual = sums.imbalance;
+    c.wall_displacement_max_mm = largest_displacement(*p.wall, *p.wall_state);
+    c.wall_kinetic_energy_uj = kinetic_energy(*p.wall, *p.wall_state);
+    double support = 0.0;
+    for (const Vec3& u : p.supports->displacement) support = std::max(support, u.squaredNorm());
+    c.support_displacement_mm = std::sqrt(support);
+
+    if (p.heart) {
+        c.heart_phase = p.heart_state->phase;
+        c.heart_displacement_mm = p.heart_state->displacement_mm;
+        double sum = 0.0;
+        for (const Index i : p.annulus->particles) {
+            const auto k = static_cast<std::size_t>(i);
+            sum += (p.wall_state->x[k] - p.wall->rest[k]).dot(p.annulus->axis);
+        }
+        if (!p.annulus->particles.empty())
+            c.annulus_displacement_mm = sum / static_cast<double>(p.annulus->particles.size());
+    }
+}
+
+void advance_imaging(Parts& /*p*/, const Input& /*input*/, double /*dt*/) {}
+
+}  // namespace cathlab

@@ -1,0 +1,125 @@
+// What a step works on: the components of a world, looked up once, and the small components that belong to the step
+// itself.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/model.h"
+#include "catheter/mount.h"
+#include "catheter/route.h"
+#include "catheter/shape.h"
+#include "catheter/wall_limit.h"
+#include "contact/contact_set.h"
+#include "contact/lumen_surface.h"
+#include "core/event.h"
+#include "effects/effect.h"
+#include "heart/cylinder_rows.h"
+#include "heart/motion.h"
+#include "rod/rod.h"
+#include "softbody/binding.h"
+#include "softbody/solver.h"
+#include "step/force_bar.h"
+#include "step/step.h"
+#include "world/step_settings.h"
+#include "world/world.h"
+
+namespace cathlab {
+
+/// Devices as the contact room numbers them.
+inline constexpr Index wire_device = 0;
+inline constexpr Index catheter_device = 1;
+
+/// Component of the vessel: the centre-line's nodes hang on the wall, so that shaft, camera and bolus follow it.
+struct MovedCentreline {
+    PointBinding binding;
+    std::vector<Vec3> positions;  ///< (nodes) now, mm; follows from the wall, not hashed
+};
+
+/// Component of the vessel: the particles whose mean displacement along the heart's axis is the annulus' motion.
+struct AnnulusRing {
+    std::vector<Index> particles;
+    std::vector<Index>
+        candidates;  ///< those that the heart's cylinder may touch: the root, not the coronaries on the heart
+    Vec3 axis = Vec3::UnitZ();
+};
+
+/// Component of the vessel: where the fixed particles stand, as displacements from rest.
+struct SupportState {
+    std::vector<Vec3> displacement;  ///< (n) at the end of the last step; zero for free particles
+};
+inline void visit(Archive& archive, SupportState& state) {
+    archive.field("displacement", state.displacement);
+}
+
+/// Component of the wire: what the drive at the sheath remembers.
+struct WireDrive {
+    double refused_mm = 0.0;      ///< sum of what was asked for and not taken
+    double contact_mn = 0.0;      ///< largest contact force in the last substep
+    double penetration_mm = 0.0;  ///< deepest penetration in the last substep
+};
+inline void visit(Archive& archive, WireDrive& drive) {
+    archive.field("refused_mm", drive.refused_mm);
+    archive.field("contact_mn", drive.contact_mn);
+    archive.field("penetration_mm", drive.penetration_mm);
+}
+
+/// Component of the catheter beside CatheterSpec, CatheterState and CatheterMount.
+struct CatheterRoute {
+    RouteGraph graph;
+    CatheterShape shape;  ///< where it lies now; follows from state and wall
+};
+
+/// Component of the heart: forces between cylinder and wall, kept from substep to substep as a warm start.
+struct HeartContact {
+    std::vector<double> force_mn;  ///< (n), one a particle
+};
+inline void visit(Archive& archive, HeartContact& contact) {
+    archive.field("force_mn", contact.force_mn);
+}
+
+/// Everything by pointer; null where the scene has none.
+struct Parts {
+    World* world = nullptr;
+    const StepSettings* settings = nullptr;
+    EventLog* events = nullptr;
+    ForceBar* force_bar = nullptr;
+    const StageProbe* probe = nullptr;
+
+    const AnatomyModel* anatomy = nullptr;
+    const SoftBodyModel* wall = nullptr;
+    SoftBodyState* wall_state = nullptr;
+    SoftBodyScratch* wall_scratch = nullptr;
+    const LumenSurfaceModel* surface = nullptr;
+    LumenSurfaceState* surface_state = nullptr;
+    MovedCentreline* centreline = nullptr;
+    AnnulusRing* annulus = nullptr;
+    SupportState* supports = nullptr;
+    ContactSet* contacts = nullptr;
+
+    Rod* wire = nullptr;
+    WireDrive* wire_drive = nullptr;
+    const CatheterSpec* catheter = nullptr;
+    const CatheterMount* mount = nullptr;
+    CatheterState* catheter_state = nullptr;
+    CatheterRoute* catheter_route = nullptr;
+    const HeartSpec* heart = nullptr;
+    HeartState* heart_state = nullptr;
+    HeartContact* heart_contact = nullptr;
+    std::vector<Effect*> effects;  ///< in the order of their entities
+
+    void stage(std::string_view room) const {
+        if (probe && probe->begin) probe->begin(room);
+    }
+    void event(const std::string& kind, const std::string& entity, const std::string& message, double value) const;
+};
+
+/// Throws std::logic_error where a component that every world needs is missing (see prepare in step.h).
+Parts find_parts(World& world);
+
+/// The context in which effects are asked, at a time within the step.
+EffectContext effect_context(const Parts& parts, double time_s, double dt);
+
+}  // namespace cathlab

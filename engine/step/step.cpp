@@ -1,0 +1,70 @@
+#include "step/step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "step/measure.h"
+#include "step/parts.h"
+#include "step/substep.h"
+
+namespace cathlab {
+namespace {
+
+// What is not a number counts as the action's default, what is out of range as its limit; either leaves an event.
+Input clamped(const Parts& p, const Input& wanted) {
+    Input input = wanted;
+    for (const ActionInfo& action : action_table()) {
+        double& value = input.*action.value;
+        const double found = value;
+        if (!std::isfinite(value)) value = action.default_value;
+        value = std::clamp(value, action.minimum, action.maximum);
+        if (value != found)
+            p.event("clamped", world_entity, "action '" + std::string(action.name) + "' was out of its range", value);
+    }
+    return input;
+}
+
+}  // namespace
+
+void step(World& world, const Input& wanted, Channels& channels) {
+    prepare(world);
+    Parts parts = find_parts(world);
+    const StepSettings& settings = *parts.settings;
+    const double t0 = world.time_s;
+    const EffectContext context = effect_context(parts, t0, settings.dt);
+
+    // [effects: input]  between the operator's command and the device
+    parts.stage("effects");
+    Input input = wanted;
+    for (Effect* effect : parts.effects) effect->input(context, input);
+    input = clamped(parts, input);
+
+    // [effects: drive]  where the supports and the heart go
+    Drive drive;
+    drive.support_displacement.assign(parts.wall->size(), Vec3::Zero());
+    for (Effect* effect : parts.effects) effect->drive(context, drive);
+    const std::vector<Vec3> before = parts.supports->displacement;
+    for (std::size_t i = 0; i < parts.wall->size(); ++i)
+        if (!parts.wall->fixed[i]) drive.support_displacement[i].setZero();
+    parts.supports->displacement = drive.support_displacement;
+
+    StepSums sums;
+    const double h = settings.dt / static_cast<double>(settings.substeps);
+    for (int k = 0; k < settings.substeps; ++k) {
+        const double s1 = static_cast<double>(k + 1) / static_cast<double>(settings.substeps);
+        substep(parts, input, drive, before, parts.supports->displacement, s1, t0 + static_cast<double>(k) * h, h,
+                sums);
+    }
+
+    ++world.step_index;
+    world.time_s = static_cast<double>(world.step_index) * settings.dt;
+
+    advance_imaging(parts, input, settings.dt);
+    measure(parts, input, sums, channels);
+    // [effects: measure]  what a sensor would read
+    parts.stage("effects");
+    for (Effect* effect : parts.effects) effect->measure(context, channels);
+    parts.stage("");
+}
+
+}  // namespace cathlab

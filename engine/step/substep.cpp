@@ -1,0 +1,173 @@
+#include "step/substep.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+#include "step/devices.h"
+#include "step/wall_forces.h"
+
+namespace cathlab {
+namespace {
+
+// A contact that carries more than this makes the drive of the wire slip, mN: the force at which the catheter, too,
+// goes no further (CatheterSpec::force_limit_n).
+constexpr double wire_contact_limit_mn = 3000.0;
+// The catheter is kinematic; this is how far its bore yields to the wire, mm/mN.  Small beside the wall's 0.01, and
+// large enough that the chain's system keeps ten digits.
+constexpr double bore_compliance = 1e-4;
+
+void command_wire(Parts& p, const Input& input, double h, StepSums& sums) {
+    const bool selected = input.device < 0.5;
+    const double wanted = selected ? input.advance * h : 0.0;
+    const double fraction =
+        wanted == 0.0 ? 1.0 : drive_fraction(*p.wire, *p.wire_drive, *p.settings, wanted, wire_contact_limit_mn);
+    const double taken = p.wire->command(fraction * wanted, selected ? input.rotate * units::deg * h : 0.0);
+    sums.wire_refused_mm += wanted - taken;
+    p.wire_drive->refused_mm += std::fabs(wanted - taken);
+}
+
+// The wire's rows against the wall and against the bore, as one span for one chain solve.
+void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<ChainRow>& rows,
+                std::vector<ChainRow>& bore_rows) {
+    const std::span<ChainRow> wall_rows = p.contacts->chain_rows(wire_device);
+    rows.assign(wall_rows.begin(), wall_rows.end());
+    if (p.catheter) {
+        std::vector<ChainRow> fresh;
+        std::vector<RodSample> now = samples.wire;
+        std::vector<double> from_mouth;
+        const double insertion = p.wire->insertion_mm();
+        for (std::size_t i = 0; i < now.size(); ++i) {
+            const Pose pose = p.wire->link_pose(static_cast<std::size_t>(now[i].link));
+            const Quat turn = pose.orientation * samples.link_before[static_cast<std::size_t>(now[i].link)].conjugate();
+            now[i].arm = turn * now[i].arm;
+            now[i].position = pose.position + now[i].arm;
+            from_mouth.push_back(insertion - samples.wire_arc[i]);
+        }
+        add_bore_rows(catheter_bore(p), now, from_mouth, bore_compliance, fresh);
+        bore_rows = std::move(fresh);
+        rows.insert(rows.end(), bore_rows.begin(), bore_rows.end());
+    }
+    p.wire->solve(h, rows);
+    std::copy(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(wall_rows.size()), wall_rows.begin());
+}
+
+void add_report(const Parts& p, const ContactReport& report, StepSums& sums) {
+    for (const DeviceContact& d : report.devices) {
+        if (d.device == wire_device) {
+            sums.wire_mn += d.normal_mn;
+            sums.wire_tip_mn += d.tip_mn;
+            sums.wire_contacts = d.active;
+            sums.wire_penetration_mm = std::max(sums.wire_penetration_mm, d.penetration_mm);
+        } else {
+            sums.catheter_mn += d.normal_mn;
+            sums.catheter_tip_mn += d.tip_mn;
+            sums.catheter_contacts = d.active;
+            sums.catheter_penetration_mm = std::max(sums.catheter_penetration_mm, d.penetration_mm);
+        }
+    }
+    sums.imbalance = std::max(sums.imbalance, report.force_imbalance);
+    const auto rows = p.contacts->rows();
+    const auto wall = p.contacts->wall_rows();
+    sums.tip_region = -1;
+    double strongest = 0.0;
+    if (p.wire_drive) {
+        p.wire_drive->contact_mn = 0.0;
+        p.wire_drive->penetration_mm = 0.0;
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (wall[i].device == wire_device && p.wire_drive) {
+            p.wire_drive->contact_mn = std::max(p.wire_drive->contact_mn, rows[i].multiplier);
+            p.wire_drive->penetration_mm = std::max(p.wire_drive->penetration_mm, -rows[i].gap);
+        }
+        if (wall[i].arc_mm <= p.contacts->settings().tip_length_mm && rows[i].multiplier > strongest) {
+            strongest = rows[i].multiplier;
+            sums.tip_region = wall[i].region;
+            sums.tip_device = wall[i].device;
+        }
+    }
+}
+
+}  // namespace
+
+void substep(Parts& p, const Input& input, const Drive& drive, std::span<const Vec3> support_before,
+             std::span<const Vec3> support_after, double s1, double time_s, double h, StepSums& sums) {
+    const SoftBodyModel& wall = *p.wall;
+    SoftBodyState& state = *p.wall_state;
+    SoftBodyScratch& scratch = *p.wall_scratch;
+    const Workers& workers = p.world->workers();
+    const EffectContext context = effect_context(p, time_s, h);
+
+    // 1. Commands and supports: what moves by itself.
+    p.stage("catheter");
+    evaluate_all(p.centreline->binding, state.x, p.centreline->positions, workers);
+    CatheterShape catheter_before;
+    if (p.catheter) {
+        catheter_before = p.catheter_route->shape;
+        sums.catheter_refused = std::max(sums.catheter_refused, move_catheter(p, input, h));
+    }
+    p.stage("rod");
+    if (p.wire) command_wire(p, input, h, sums);
+    DeviceSamples samples;
+    begin_samples(p, catheter_before, samples);
+    if (p.wire) p.wire->predict(h);
+
+    p.stage("effects");
+    WallForces extra(p, context);
+    p.stage("softbody");
+    std::vector<Vec3> target(wall.size());
+    for (std::size_t i = 0; i < target.size(); ++i)
+        target[i] =
+            wall.fixed[i] ? Vec3(wall.rest[i] + (1.0 - s1) * support_before[i] + s1 * support_after[i]) : wall.rest[i];
+    predict(wall, state, scratch, h, target, extra.external(), workers);
+
+    // 2. Contacts, against the wall where it is predicted to be.
+    p.stage("contact");
+    update(*p.surface, state.x, *p.surface_state, workers);
+    refresh_samples(p, samples);
+    p.contacts->detect(*p.surface, *p.surface_state, samples.list, p.settings->contact_margin_mm, scratch.start,
+                       scratch.compliance, workers);
+    p.stage("heart");
+    extra.detect_heart(p, drive, h);
+
+    // 3. Clusters, chain and rows in turn.  Goals are applied under the old forces before the rows are looked at, so
+    // that a row sees the gap that the wall would really leave.
+    std::vector<ChainRow> rows;
+    std::vector<ChainRow> bore_rows;
+    for (int pass = 0; pass < p.settings->iterations; ++pass) {
+        p.stage("softbody");
+        solve_goals(wall, state, scratch, workers);
+        extra.gather(p);
+        apply(wall, state, scratch, h, workers);
+
+        p.stage("contact");
+        refresh_samples(p, samples);
+        p.contacts->refresh(samples.list, state.x);
+        if (p.wire) {
+            p.stage("rod");
+            solve_wire(p, samples, h, rows, bore_rows);
+            p.stage("contact");
+        }
+        p.contacts->solve_kinematic();
+        extra.solve(p);
+
+        p.stage("softbody");
+        extra.gather(p);
+        apply(wall, state, scratch, h, workers);
+    }
+
+    // 4. Velocities from positions, forces from multipliers.
+    finish(wall, state, scratch, h, workers);
+    p.stage("rod");
+    if (p.wire) {
+        p.wire->finish(h);
+        sums.wire_sheath_mn += p.wire->sheath_force_mn();
+    }
+    p.stage("contact");
+    refresh_samples(p, samples);
+    p.contacts->refresh(samples.list, state.x);
+    add_report(p, p.contacts->report(state.x), sums);
+    ++sums.substeps;
+}
+
+}  // namespace cathlab

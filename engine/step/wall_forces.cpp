@@ -1,0 +1,67 @@
+#include "step/wall_forces.h"
+
+#include <algorithm>
+
+namespace cathlab {
+
+WallForces::WallForces(const Parts& p, const EffectContext& context) {
+    const std::size_t n = p.wall->size();
+    if (p.effects.empty()) return;
+    std::vector<double>& scale = p.wall_scratch->stiffness_scale;
+    scale.assign(n, 1.0);
+    for (Effect* effect : p.effects) effect->material(context, scale);
+    // A scale of one everywhere is what an empty array means: a world with an effect that leaves the material alone
+    // stays bit-identical to one without it.
+    if (std::all_of(scale.begin(), scale.end(), [](double s) { return s == 1.0; })) scale.clear();
+
+    for (Effect* effect : p.effects) effect->constraint(context, anchors_);
+    anchor_force_.assign(anchors_.size(), Vec3::Zero());
+
+    external_.assign(n, Vec3::Zero());
+    for (Effect* effect : p.effects) effect->force(context, external_);
+    if (std::all_of(external_.begin(), external_.end(), [](const Vec3& f) { return f.isZero(0.0); })) external_.clear();
+}
+
+void WallForces::detect_heart(const Parts& p, const Drive& drive, double h) {
+    if (!p.heart) return;
+    advance(*p.heart, *p.heart_state, h, drive.heart_rate_scale);
+    const double displacement = p.heart_state->displacement_mm + drive.heart_displacement_mm;
+    const Pose cylinder = cylinder_pose(*p.heart, p.anatomy->annulus->pose, displacement);
+    find_rows(*p.heart, cylinder, p.wall_state->x, p.annulus->candidates, p.settings->contact_margin_mm, rows_);
+    // Particles without a row are not touched: their force ends here.
+    std::vector<double> kept(p.wall->size(), 0.0);
+    for (const CylinderRow& row : rows_)
+        kept[static_cast<std::size_t>(row.particle)] =
+            p.heart_contact->force_mn[static_cast<std::size_t>(row.particle)];
+    p.heart_contact->force_mn.swap(kept);
+}
+
+void WallForces::solve(const Parts& p) {
+    const std::vector<double>& c = p.wall_scratch->compliance;
+    for (const CylinderRow& row : rows_) {
+        const auto i = static_cast<std::size_t>(row.particle);
+        if (c[i] <= 0.0) continue;
+        double& lambda = p.heart_contact->force_mn[i];
+        lambda = std::max(0.0, lambda - row.gap_at(p.wall_state->x[i]) / c[i]);
+    }
+    for (std::size_t k = 0; k < anchors_.size(); ++k) {
+        const auto i = static_cast<std::size_t>(anchors_[k].particle);
+        if (c[i] <= 0.0) continue;
+        const Vec3 free = p.wall_state->x[i] - c[i] * anchor_force_[k];
+        anchor_force_[k] = anchors_[k].stiffness / (1.0 + c[i] * anchors_[k].stiffness) * (anchors_[k].target - free);
+    }
+}
+
+void WallForces::gather(const Parts& p) const {
+    std::vector<Vec3>& force = p.wall_scratch->force;
+    std::fill(force.begin(), force.end(), Vec3::Zero());
+    p.contacts->apply_to_wall(force);
+    for (const CylinderRow& row : rows_) {
+        const auto i = static_cast<std::size_t>(row.particle);
+        force[i] += p.heart_contact->force_mn[i] * row.normal;
+    }
+    for (std::size_t k = 0; k < anchors_.size(); ++k)
+        force[static_cast<std::size_t>(anchors_[k].particle)] += anchor_force_[k];
+}
+
+}  // namespace cathlab
