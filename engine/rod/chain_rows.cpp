@@ -12,8 +12,8 @@ constexpr double creep_mm_s = 0.5;        // speed below which friction is a sti
 constexpr int rubbing_passes = 4;         // passes in which friction may grow or turn
 constexpr int engaging_passes = 12;       // passes in which rows may engage
 constexpr int last_rubbing_pass = 30;     // a row that still leaves its cone then loses its friction
-constexpr double slide_tolerance = 0.05;  // of the cone: how far a sliding row's force may be from the law's
-constexpr double inside_cone = 0.99;      // aim of a sliding row, so that a small loss of normal force leaves it legal
+constexpr double slide_tolerance = 0.9;   // of the law's force: less is mended while passes last
+constexpr double inside_cone = 0.99;      // of the cone: aim, so that a small loss of normal force leaves a row legal
 constexpr double well_inside_cone = 0.9;  // the same when passes run out
 constexpr double cone_tolerance = 1e-9;   // of the cone's half width
 
@@ -33,23 +33,10 @@ void check_row(const ChainRow& row) {
 
 }  // namespace
 
-void ChainRows::set_stick(Work& w, double load) const {
-    const double k = w.row.friction * load / rest_slip_;
-    w.rub = Rub::stick;
-    w.stick = k / (1.0 + k * w.row.compliance);
-    w.stick_load = load;
-}
-
-// A row that comes in sliding goes on sliding.
-void ChainRows::set_rub(Work& w, double load) const {
-    const Vec3 slip = across(w.row.slip, w.row.normal);
-    const double size = slip.norm();
-    if (size <= 2.0 * rest_slip_ || slip.dot(w.row.tangent_force) >= 0.0) {
-        set_stick(w, load);
-        return;
-    }
-    w.rub = Rub::slide;
-    w.slide = slip * (-inside_cone * w.row.friction * load / size);
+// k of the law |f| = min(mu load, mu load |s'| / s_0) seen as a secant through no slip, no force.
+void ChainRows::set_rub(Work& w, double load, double slip, double share) const {
+    w.rub = share * w.row.friction * load / std::max(slip, rest_slip_);
+    w.rub_with_wall = w.rub / (1.0 + w.rub * w.row.compliance);
 }
 
 void ChainRows::begin(std::span<const ChainRow> rows, std::size_t free_links, double h) {
@@ -65,7 +52,8 @@ void ChainRows::begin(std::span<const ChainRow> rows, std::size_t free_links, do
         const double first = w.row.multiplier - w.row.gap / w.row.compliance;
         w.active = w.row.bilateral || first > 0.0;
         const double load = std::max(0.0, w.row.multiplier);
-        if (w.active && w.row.friction > 0.0 && load > 0.0) set_rub(w, load);
+        if (w.active && w.row.friction > 0.0 && load > 0.0)
+            set_rub(w, load, across(w.row.slip, w.row.normal).norm(), 1.0);
         start_[std::min(static_cast<std::size_t>(w.row.link), free_links) + 1] += 1;
     }
     for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
@@ -83,10 +71,7 @@ void ChainRows::add_to(std::size_t link, Mat6& diagonal, Vec6& right) const {
         diagonal += (stiffness * w.jacobian) * w.jacobian.transpose();
         right += w.jacobian * (w.row.multiplier - w.row.gap * stiffness);
         const Vec3& arm = w.row.arm;
-        if (w.rub == Rub::slide) {
-            right.head<3>() += w.slide;
-            right.tail<3>() += arm.cross(w.slide);
-        } else if (w.rub == Rub::stick) {
+        if (w.rub > 0.0) {
             // B = [P, P [-arm]x]: P (dx + dtheta x arm)
             Mat3 hat;
             hat << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
@@ -94,8 +79,8 @@ void ChainRows::add_to(std::size_t link, Mat6& diagonal, Vec6& right) const {
             const Mat3 p = Mat3::Identity() - w.row.normal * w.row.normal.transpose();
             b << p, p * hat;
             const Vec3 now = across(w.row.slip, w.row.normal) - w.row.compliance * w.row.tangent_force;
-            diagonal += w.stick * b.transpose() * b;
-            right -= w.stick * b.transpose() * now;
+            diagonal += w.rub_with_wall * b.transpose() * b;
+            right -= w.rub_with_wall * b.transpose() * now;
         }
     }
 }
@@ -119,51 +104,31 @@ bool ChainRows::update_normal(Work& w, const Vec6& d, bool may_engage) const {
 bool ChainRows::update_friction(Work& w, const Vec6& d, int pass) const {
     w.tangent = Vec3::Zero();
     if (!w.active || w.row.friction <= 0.0) {
-        w.rub = Rub::none;
+        w.rub = 0.0;
         return false;
     }
-    const bool free_pass = pass < rubbing_passes;
-    const double cone = w.row.friction * std::fabs(w.multiplier);
-    const double c = w.row.compliance;
+    const bool may_grow = pass < rubbing_passes;
+    const double load = std::fabs(w.multiplier), cone = w.row.friction * load;
     const Vec3 moved = across(d.head<3>() + d.tail<3>().cross(w.row.arm), w.row.normal);
-    const Vec3 slip_before = across(w.row.slip, w.row.normal) + moved - c * w.row.tangent_force;  // s' - c f'
-    if (w.rub == Rub::none) {
-        if (!free_pass || cone <= 0.0) return false;
-        const double speed = slip_before.norm();
-        if (speed > 2.0 * (rest_slip_ + c * cone)) {
-            w.rub = Rub::slide;
-            w.slide = slip_before * (-inside_cone * cone / speed);
+    const Vec3 without = across(w.row.slip, w.row.normal) + moved - w.row.compliance * w.row.tangent_force;
+    if (w.rub <= 0.0) {
+        if (!may_grow || cone <= 0.0) return false;
+        set_rub(w, load, without.norm(), inside_cone);
+        return true;
+    }
+    w.tangent = -w.rub_with_wall * without;
+    const double force = w.tangent.norm(), slip = force / w.rub;
+    if (force > cone * (1.0 + cone_tolerance)) {
+        if (pass >= last_rubbing_pass) {
+            w.rub = 0.0;
         } else {
-            set_stick(w, std::fabs(w.multiplier));
+            set_rub(w, load, slip, may_grow ? inside_cone : well_inside_cone);
         }
         return true;
     }
-    w.tangent = w.rub == Rub::stick ? Vec3(-w.stick * slip_before) : w.slide;
-    const double size = w.tangent.norm();
-    const Vec3 slip = slip_before + c * w.tangent;
-    if (free_pass && w.rub == Rub::slide) {
-        // Law at the slip found: back to sticking where it turned round or nearly stopped.
-        const double speed = slip.norm();
-        if (speed < rest_slip_ || slip.dot(w.tangent) >= 0.0) {
-            set_stick(w, std::fabs(w.multiplier));
-            return true;
-        }
-        const Vec3 wanted = slip * (-cone / speed);
-        if ((wanted - w.tangent).norm() <= slide_tolerance * cone && size <= cone) return false;
-        w.slide = inside_cone * wanted;
-        return true;
-    }
-    if (size > cone * (1.0 + cone_tolerance)) {
-        const double keep = pass < last_rubbing_pass ? (free_pass ? inside_cone : well_inside_cone) * cone / size : 0.0;
-        w.slide = w.tangent * keep;
-        w.rub = Rub::slide;
-        return true;
-    }
-    if (free_pass && std::fabs(w.multiplier) > 2.0 * w.stick_load) {
-        set_stick(w, std::fabs(w.multiplier));
-        return true;
-    }
-    return false;
+    if (!may_grow || force >= slide_tolerance * cone * std::min(1.0, slip / rest_slip_)) return false;
+    set_rub(w, load, slip, inside_cone);
+    return true;
 }
 
 std::size_t ChainRows::update(const std::vector<Vec6>& solution, int pass) {

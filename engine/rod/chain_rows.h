@@ -5,9 +5,9 @@
 // an active row adds J^T J / c to its link's block and J^T (lambda - gap / c) to the right-hand side.
 //
 // Friction: f' = -k s' with the slip s' = slip + P (dx + dtheta x arm) + c (f' - f), P = I - n n^T: the partner gives
-// way sideways as it does along the normal.  k = mu lambda / s_0 with s_0 = 0.5 mm/s x h is Coulomb's law made smooth
-// at rest (as in [li2020], with a lagged normal force); a row that would leave the
-// cone slides: its friction is then a constant force -mu lambda' s' / |s'| in the next pass.
+// way sideways as it does along the normal.  k = mu lambda' / max(|s'|, s_0), s_0 = 0.5 mm/s x h, makes this Coulomb's
+// law, smooth at rest (as in [li2020]); k is found over the passes.  A force that is linear in the slip inside the
+// solve can never turn a light link round, as a constant sliding force would.
 #pragma once
 
 #include <span>
@@ -34,21 +34,17 @@ public:
     void end(std::span<ChainRow> rows) const;
 
 private:
-    enum class Rub { none, stick, slide };
     struct Work {
         ChainRow row;
         Vec6 jacobian;
         bool active = false;
-        Rub rub = Rub::none;
-        double stick = 0.0;         // k / (1 + k c)
-        double stick_load = 0.0;    // the normal force for which stick was set
-        Vec3 slide = Vec3::Zero();  // the constant force of a sliding row
-        double multiplier = 0.0;    // found
+        double rub = 0.0;            // k, mN/mm
+        double rub_with_wall = 0.0;  // k / (1 + k c)
+        double multiplier = 0.0;     // found
         Vec3 tangent = Vec3::Zero();
     };
 
-    void set_stick(Work& w, double load) const;
-    void set_rub(Work& w, double load) const;
+    void set_rub(Work& w, double load, double slip, double share) const;
     bool update_normal(Work& w, const Vec6& d, bool may_engage) const;
     bool update_friction(Work& w, const Vec6& d, int pass) const;
 
