@@ -40,7 +40,9 @@ std::vector<Vec3> averaged(const std::vector<Vec3>& nodes, std::span<const doubl
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const Vec3 shift = out[i] - nodes[i];
         const double limit = std::max(shape.deviation_limit * radius[i], 1e-6);
-        out[i] = nodes[i] + shift / std::sqrt(1.0 + shift.squaredNorm() / (limit * limit));
+        const double ratio = shift.squaredNorm() / (limit * limit);
+        out[i] = nodes[i] +
+                 shift / std::sqrt(std::sqrt(1.0 + ratio * ratio));  // untouched well below the limit, never beyond
     }
     return out;
 }

@@ -22,7 +22,7 @@ struct Rail {
 };
 
 struct RailShape {
-    double smoothing_radii = 1.5;   ///< half-width of the averaging along the route, in local lumen radii
+    double smoothing_radii = 0.75;  ///< half-width of either averaging along the route, in local lumen radii
     double smoothing_max_mm = 7.0;  ///< but no wider than this
     double deviation_limit = 0.4;   ///< the averaged node stays within this fraction of the local radius, < 1
 };
