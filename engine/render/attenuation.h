@@ -3,7 +3,6 @@
 
 #include <array>
 #include <string>
-#include <vector>
 
 namespace cathlab {
 
@@ -13,20 +12,22 @@ using BinValues = std::array<float, energy_bins>;
 /// Share of each bin in the detector's signal behind the filters, without a patient (sum 1), and mu of the materials.
 class BeamTable {
 public:
-    /// Tungsten anode (Kramers' law), 2.5 mm Al, copper_mm Cu, energy-integrating CsI of 0.55 mm.
     /// kvp in [40, 150], copper_mm in [0, 1.5]; throws UserError otherwise.
     BeamTable(double kvp, double copper_mm);
 
     const BinValues& weights() const { return weights_; }
-    /// Linear attenuation coefficient in 1/mm per bin (mean over the bin); "air" is 0.
+    /// Detected photons per mm2 and nGy of detector kerma behind a patient of 200 mm of water.
+    double photons_per_mm2_ngy() const { return photons_; }
+    /// Linear attenuation coefficient in 1/mm per bin; "air" is 0.
     /// Throws UserError with the nearest name for a material that is not in the table.
     BinValues attenuation(const std::string& material) const;
     /// 1/mm per bin for one mg/mL of iodine.
     BinValues iodine() const;
 
 private:
-    std::vector<double> energy_kev_, weight_;  // fine grid, energy_bins equal runs
+    std::array<double, energy_bins> energy_kev_{};
     BinValues weights_{};
+    double photons_ = 0;
 };
 
 }  // namespace cathlab

@@ -22,7 +22,6 @@ namespace cathlab {
 namespace {
 
 constexpr int device_samples = 3;             // rays a side and pixel: a wire is about one pixel wide
-constexpr double photons_per_mm2_ngy = 33.0;  // detected, behind a patient, 60 to 120 kV
 constexpr double scatter_sigma_mm = 40.0;     // width of the scatter kernel at the detector
 constexpr double usual_magnification = 1.45;  // SID / SOD of C-arms: 1.4 to 1.5
 constexpr double harmonisation_sigma_mm = 25.0;
@@ -33,6 +32,11 @@ BinValues difference(const BeamTable& beam, const std::string& inside, const std
     const BinValues other = beam.attenuation(outside);
     for (std::size_t k = 0; k < energy_bins; ++k) mu[k] -= other[k];
     return mu;
+}
+
+// Generators step by whole kilovolts; so the context is not made anew for every small turn of the exposure control.
+double generator_kvp(const FrameExposure& e) {
+    return std::round(e.kvp);
 }
 
 struct ViewKey {
@@ -53,8 +57,9 @@ ViewKey view_key(const FrameDescription& f, int width, int height) {
 
 ViewKey context_key(const FrameDescription& f, int width, int height) {
     ViewKey key = view_key(f, width, height);
-    key.numbers.insert(key.numbers.end(), {f.exposure.kvp, f.exposure.copper_mm, f.exposure.scatter_to_primary,
-                                           f.exposure.measuring_field, double(f.solids_revision)});
+    key.numbers.insert(key.numbers.end(),
+                       {generator_kvp(f.exposure), f.exposure.copper_mm, f.exposure.scatter_to_primary,
+                        f.exposure.measuring_field, double(f.solids_revision)});
     for (const FrameSolid& solid : f.solids) {
         if (solid.moving) continue;
         append(key, solid.pose.position);
@@ -99,9 +104,10 @@ struct Fluoroscope::Impl {
     std::vector<std::uint8_t> grey;
 
     void use_beam(const FrameExposure& e) {
-        if (beam && beam_kvp == e.kvp && beam_copper == e.copper_mm) return;
-        beam = std::make_unique<BeamTable>(e.kvp, e.copper_mm);
-        beam_kvp = e.kvp;
+        const double kvp = generator_kvp(e);
+        if (beam && beam_kvp == kvp && beam_copper == e.copper_mm) return;
+        beam = std::make_unique<BeamTable>(kvp, e.copper_mm);
+        beam_kvp = kvp;
         beam_copper = e.copper_mm;
     }
 
@@ -184,7 +190,7 @@ void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection
     // The measuring field holds the detector's kerma; a coarse picture of the logarithm evens out lung and spine.
     const double side = std::clamp(f.exposure.measuring_field, 0.05, 1.0);
     const auto inside = [&](int v, int n) { return std::fabs((v + 0.5) / n - 0.5) <= 0.5 * side; };
-    double sum = 0;
+    double sum = 0, sum_of_logs = 0;
     std::size_t pixels = 0;
     ImageF logs(width, projection.height());
     for (int y = 0; y < projection.height(); ++y) {
@@ -194,13 +200,14 @@ void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection
             logs.values[i] = fast_log(total);
             if (inside(y, projection.height()) && inside(x, width)) {
                 sum += total;
+                sum_of_logs += logs.values[i];
                 ++pixels;
             }
         }
     }
     reference = sum / static_cast<double>(pixels);
     coarse_log = wide_blur(logs, harmonisation_sigma_mm / projection.pixel_mm());
-    coarse_mean = std::log(reference);
+    coarse_mean = sum_of_logs / static_cast<double>(pixels);
 }
 
 void Fluoroscope::Impl::draw_moving(const FrameDescription& f, const Projection& projection) {
@@ -304,8 +311,8 @@ void Fluoroscope::Impl::detect(const FrameDescription& f, const Projection& proj
     const FrameExposure& e = f.exposure;
     const double area = projection.pixel_mm() * projection.pixel_mm();
     const double kerma = e.open_field_kerma_ngy > 0 ? e.open_field_kerma_ngy : e.detector_kerma_ngy / reference;
-    const double photons = kerma * photons_per_mm2_ngy * area;
-    photons_of_kerma = e.detector_kerma_ngy * photons_per_mm2_ngy * area;
+    const double photons = kerma * beam->photons_per_mm2_ngy() * area;
+    photons_of_kerma = e.detector_kerma_ngy * beam->photons_per_mm2_ngy() * area;
     signal = intensity;
     const double magnified = (usual_magnification - 1) * e.focal_spot_mm;
     blur(signal, 0.29 * magnified / projection.pixel_mm(), workers);  // 0.29 = sigma of a unit box
@@ -327,8 +334,8 @@ void Fluoroscope::Impl::display(const FrameExposure& e) {
     log_image.values.resize(history.values.size());
     const auto mean = static_cast<float>(coarse_mean);
     const auto even = static_cast<float>(e.harmonisation);
-    // The wanted kerma is grey `level`.
-    const auto unit = static_cast<float>(1.0 / photons_of_kerma);
+    // The wanted kerma makes the measuring field's middle (the mean of its logarithms) grey `level`.
+    const auto unit = static_cast<float>(reference / std::exp(coarse_mean) / photons_of_kerma);
     workers.for_ranges(static_cast<std::size_t>(height), 32, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin * columns; i < end * columns; ++i) {
             const float relative = std::max(0.004F, history.values[i] * unit);

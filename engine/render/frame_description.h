@@ -72,9 +72,9 @@ struct FrameExposure {
     double electronic_noise_photons = 2.0;  ///< rms per pixel, in detected photons
     double recursion = 0.45;                ///< b of y = (1 - b) x + b y', [0, 0.95]
     double edge_enhancement = 0.35;         ///< of the log image, small neighbourhood
-    double harmonisation = 0.55;            ///< share of the coarse log image that is taken off, [0, 1]
-    double window = 1.25;                   ///< width of the grey scale in units of ln(intensity)
-    double level = 0.62;                    ///< grey (0..1) of the measuring field's mean
+    double harmonisation = 0.7;             ///< share of the coarse log image that is taken off, [0, 1]
+    double window = 2.0;                    ///< width of the grey scale in units of ln(intensity)
+    double level = 0.58;                    ///< grey (0..1) of the measuring field's middle
     double measuring_field = 0.5;           ///< side of the central square that holds the kerma, share of the picture
 };
 

@@ -65,6 +65,9 @@ void add_device(const FrameDevice& device, const Pose& camera, Batch& out) {
         if (std::max(a.z(), b.z()) < near_mm || std::min(a.norm(), b.norm()) > 150) continue;
         const Vec3 axis = b - a;
         if (!(axis.norm() > 1e-6)) continue;
+        // A camera inside a piece (on the wire that it rides on) looks past it.
+        const double along = std::clamp(-a.dot(axis) / axis.squaredNorm(), 0.0, 1.0);
+        if ((a + along * axis).norm() < r + near_mm) continue;
         const Vec3 u = axis.unitOrthogonal();
         const Vec3 v = axis.normalized().cross(u);
         std::array<GLuint, 2 * tube_sides> ring{};
