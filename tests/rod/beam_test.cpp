@@ -50,5 +50,61 @@ TEST(Beam, TheWireStretchesByItsAxialStiffness) {
     EXPECT_NEAR(rod.sheath_force_mn(), -force, 1e-6 * force);
 }
 
+// Tip of the elastica: a cantilever of length 1, EI = 1 under a dead load `p` across, by Runge-Kutta from the clamp
+// with the clamp's moment found by bisection so that the tip's is zero.  Angle a from the axis: a'' = -p cos a.
+Vec2 elastica_tip(double p) {
+    const int n = 4000;
+    const double ds = 1.0 / n;
+    Vec2 tip = Vec2::Zero();
+    double low = 0.0, high = p;
+    for (int pass = 0; pass < 60; ++pass) {
+        double a = 0.0, m = 0.5 * (low + high);
+        tip.setZero();
+        for (int i = 0; i < n; ++i) {
+            const double a_mid = a + 0.5 * ds * m, m_mid = m - 0.5 * ds * p * std::cos(a);
+            tip += ds * Vec2(std::cos(a_mid), std::sin(a_mid));
+            m -= ds * p * std::cos(a_mid);
+            a += ds * m_mid;
+        }
+        (m > 0.0 ? high : low) = 0.5 * (low + high);
+    }
+    return tip;
+}
+
+TEST(Beam, ALargeBendFollowsTheElastica) {
+    const WireSpec spec = test::bmw();
+    for (const double p : {1.0, 2.0, 3.5}) {
+        Rod rod(spec, {}, 150.0);
+        const double arm = 150.0 - 0.5 * rod.link_length(0);
+        settle(rod, 0, Vec3(0.0, p * 75e3 / (arm * arm), 0.0), 0.2, 600);
+        const Vec2 expected = arm * elastica_tip(p);
+        const Vec3 found = rod.link_pose(0).position;
+        EXPECT_NEAR(found.y(), expected.y(), 0.01 * expected.y()) << "p = " << p;
+        EXPECT_NEAR(arm - found.z(), arm - expected.x(), 0.02 * (arm - expected.x())) << "p = " << p;
+    }
+}
+
+TEST(Beam, ItBucklesAtEulersLoad) {
+    // A column clamped at the mouth, free at the tip: P = pi^2 EI / (2 L)^2.  A tiny side load grows by 1 / (1 - F /
+    // P).
+    const WireSpec spec = test::amplatz();
+    const double insertion = 120.0, ei = 1850e3;
+    const auto sway = [&](double share) {
+        Rod rod(spec, {}, insertion);
+        const double arm = insertion - 0.5 * rod.link_length(0);
+        const double load = share * 9.8696 * ei / (4.0 * arm * arm);
+        settle(rod, 0, Vec3(0.1, 0.0, -load), 0.2, 3000);
+        return rod.link_pose(0).position.x();
+    };
+    // For a side load at the tip the growth is 3 (tan u - u) / u^3 with u = pi/2 sqrt(F / P).
+    const double straight = sway(0.0);
+    for (const double share : {0.5, 0.9}) {
+        const double u = 1.5707963 * std::sqrt(share);
+        EXPECT_NEAR(sway(share) / straight, 3.0 * (std::tan(u) - u) / (u * u * u), 0.03 / (1.0 - share)) << share;
+    }
+    EXPECT_GT(std::fabs(sway(1.03)), 100.0 * straight);
+    EXPECT_LT(std::fabs(sway(0.97)), 60.0 * straight);
+}
+
 }  // namespace
 }  // namespace cathlab
