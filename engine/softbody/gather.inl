@@ -1,20 +1,19 @@
-// The gather of goals, included once an instruction set, as kernel.inl is: GATHER_WIDTH doubles a vector, GATHER its name.
+// The gather of goals, included once an instruction set, as kernel.inl is: GATHER its name.
 // The twelve numbers of a transform are added side by side, so their order of summation does not depend on the width.
 TARGET static void GATHER(const std::int32_t* start, const std::int32_t* cluster, const double* transform,
                           const double* rest, double* goal, std::size_t begin, std::size_t end) {
-    using Vector = double __attribute__((vector_size(GATHER_WIDTH * sizeof(double))));
-    constexpr int pieces = transform_doubles / GATHER_WIDTH;
+    constexpr int pieces = transform_doubles / BLOCK;
     for (std::size_t i = begin; i < end; ++i) {
         // Even and odd clusters have sums of their own: one chain of additions would wait on itself.
-        Vector sum[pieces] = {}, odd[pieces] = {};
+        Block sum[pieces] = {}, odd[pieces] = {};
         std::int32_t m = start[i];
         for (; m + 1 < start[i + 1]; m += 2) {
             const double* from = transform + static_cast<std::size_t>(cluster[m]) * transform_doubles;
             const double* next = transform + static_cast<std::size_t>(cluster[m + 1]) * transform_doubles;
             for (int p = 0; p < pieces; ++p) {
-                Vector part, other;
-                __builtin_memcpy(&part, from + p * GATHER_WIDTH, sizeof part);
-                __builtin_memcpy(&other, next + p * GATHER_WIDTH, sizeof other);
+                Block part, other;
+                __builtin_memcpy(&part, from + p * BLOCK, sizeof part);
+                __builtin_memcpy(&other, next + p * BLOCK, sizeof other);
                 sum[p] += part;
                 odd[p] += other;
             }
@@ -22,8 +21,8 @@ TARGET static void GATHER(const std::int32_t* start, const std::int32_t* cluster
         if (m < start[i + 1]) {
             const double* from = transform + static_cast<std::size_t>(cluster[m]) * transform_doubles;
             for (int p = 0; p < pieces; ++p) {
-                Vector part;
-                __builtin_memcpy(&part, from + p * GATHER_WIDTH, sizeof part);
+                Block part;
+                __builtin_memcpy(&part, from + p * BLOCK, sizeof part);
                 sum[p] += part;
             }
         }

@@ -3,12 +3,28 @@
 //   WIDTH       lanes of a vector, 2, 4 or 8
 //   NAMED(x)    x with the suffix of this copy
 //   TARGET      the function attribute that selects the instructions
+//   JOINED      1 where a vector is made of two blocks of doubles (float), 0 where it is one
 // Plain arrays and compiler vectors only: an inline function of a library, compiled here for a newer processor, could be the
 // copy that the linker keeps for everybody.
 
 using NAMED(V) = REAL __attribute__((vector_size(WIDTH * sizeof(REAL))));
 
 TARGET static inline void NAMED(load)(const REAL* from, NAMED(V) & to) { __builtin_memcpy(&to, from, sizeof to); }
+
+// The vector of one axis from blocks of doubles.
+TARGET static inline void NAMED(join)(const Block (*now)[3], int axis, NAMED(V) & to) {
+#if JOINED
+    using Part = REAL __attribute__((vector_size(BLOCK * sizeof(REAL))));
+    const Part low = __builtin_convertvector(now[0][axis], Part), high = __builtin_convertvector(now[1][axis], Part);
+#if BLOCK == 2
+    to = __builtin_shufflevector(low, high, 0, 1, 2, 3);
+#else
+    to = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+#endif
+#else
+    to = now[0][axis];
+#endif
+}
 
 // R of the quaternion q, whatever its length: r[3 * row + column].
 TARGET static inline void NAMED(matrix_of)(const NAMED(V) * q, NAMED(V) * r) {
@@ -92,10 +108,10 @@ TARGET static void NAMED(fit)(const void* groups, const double* x, double* rotat
         const auto first = static_cast<std::size_t>(view.first_slot[g]);
         const auto last = static_cast<std::size_t>(view.first_slot[g + 1]);
         for (int half = 0; half < lanes; half += WIDTH) {
-            double origin[3][WIDTH];
-            for (int l = 0; l < WIDTH; ++l)
-                for (int k = 0; k < 3; ++k)
-                    origin[k][l] = x[3 * static_cast<std::size_t>(view.particle[first * lanes + half + l]) + k];
+            constexpr int blocks = WIDTH / BLOCK;
+            Block origin[blocks][3];
+            for (int k = 0; k < blocks; ++k)
+                places(x, view.particle + first * lanes + half + k * BLOCK, origin[k][0], origin[k][1], origin[k][2]);
             NAMED(V) c[3], a[9];
             for (auto& v : c) v = NAMED(V){};
             for (auto& v : a) v = NAMED(V){};
@@ -103,19 +119,13 @@ TARGET static void NAMED(fit)(const void* groups, const double* x, double* rotat
                 const std::int32_t* particle = view.particle + slot * lanes + half;
                 const REAL* member = view.member + slot * 4 * lanes + half;
                 NAMED(V) d[3], moment[3], weight;
-                const double* p[WIDTH];
-                for (int l = 0; l < WIDTH; ++l) p[l] = x + 3 * static_cast<std::size_t>(particle[l]);
-#define LANE(l) static_cast<REAL>(p[l][k] - origin[k][l])
-                for (int k = 0; k < 3; ++k) {
-#if WIDTH == 2
-                    d[k] = NAMED(V){LANE(0), LANE(1)};
-#elif WIDTH == 4
-                    d[k] = NAMED(V){LANE(0), LANE(1), LANE(2), LANE(3)};
-#else
-                    d[k] = NAMED(V){LANE(0), LANE(1), LANE(2), LANE(3), LANE(4), LANE(5), LANE(6), LANE(7)};
-#endif
+                Block now[blocks][3];
+                for (int k = 0; k < blocks; ++k) {
+                    places(x, particle + k * BLOCK, now[k][0], now[k][1], now[k][2]);
+                    for (int axis = 0; axis < 3; ++axis) now[k][axis] -= origin[k][axis];
                 }
-#undef LANE
+                // Differences are taken in double, then rounded: a float could not tell places at 500 mm well enough apart.
+                for (int axis = 0; axis < 3; ++axis) NAMED(join)(now, axis, d[axis]);
                 for (int k = 0; k < 3; ++k) NAMED(load)(member + k * lanes, moment[k]);
                 NAMED(load)(member + 3 * lanes, weight);
                 for (int k = 0; k < 3; ++k) {
@@ -138,7 +148,7 @@ TARGET static void NAMED(fit)(const void* groups, const double* x, double* rotat
                     out[k] = r0;
                     out[3 + k] = r1;
                     out[6 + k] = r2;
-                    out[9 + k] = (origin[k][l] + static_cast<double>(c[k][l])) -
+                    out[9 + k] = (origin[l / BLOCK][k][l % BLOCK] + static_cast<double>(c[k][l])) -
                                  (r0 * rest[0] + r1 * rest[lanes] + r2 * rest[2 * lanes]);
                 }
             }

@@ -6,9 +6,8 @@ namespace cathlab::kernel {
 
 namespace {
 #define TARGET __attribute__((target("avx2")))
-#define DOUBLES 4
+#define BLOCK 4
 #define FLOATS 8
-#define GATHER_WIDTH 4
 #include "softbody/kernel_copies.inl"
 }  // namespace
 

@@ -4,9 +4,8 @@ namespace cathlab::kernel {
 
 namespace {
 #define TARGET
-#define DOUBLES 2
+#define BLOCK 2
 #define FLOATS 4
-#define GATHER_WIDTH 2
 #include "softbody/kernel_copies.inl"
 }  // namespace
 

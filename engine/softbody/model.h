@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/types.h"
+#include "softbody/aligned.h"
 #include "softbody/kernel.h"
 #include "softbody/wall_sample.h"
 
@@ -52,8 +53,8 @@ struct WallParameters {
 template <class Real>
 struct ClusterGroups {
     std::vector<std::int32_t> first_slot;  ///< (groups + 1) in slots
-    std::vector<std::int32_t> particle;    ///< (slots x 8)
-    std::vector<Real> member;  ///< (slots x 4 x 8): w (X - X_c) in x, y, z [kg mm] over cluster weight, w over it
+    AlignedVector<std::int32_t> particle;  ///< (slots x 8)
+    AlignedVector<Real> member;  ///< (slots x 4 x 8): w (X - X_c) in x, y, z [kg mm] over cluster weight, w over it
     std::vector<double> rest_centroid;  ///< (groups x 3 x 8) mm
 
     std::size_t groups() const { return first_slot.empty() ? 0 : first_slot.size() - 1; }

@@ -12,6 +12,7 @@
 
 #include "core/archive.h"
 #include "core/parallel.h"
+#include "softbody/aligned.h"
 #include "softbody/model.h"
 
 namespace cathlab {
@@ -34,8 +35,8 @@ struct SoftBodyScratch {
     std::vector<double> compliance;    ///< (n) c_i, mm/mN, written by predict; 0 for fixed particles
     std::vector<double>
         stiffness_scale;  ///< (n) factor on k_i, > 0, or empty for 1: effects of the material write it before predict
-    std::vector<double> transform;  ///< (lanes x 12) of the clusters
-    std::vector<Vec3> momentum;     ///< linear and angular of each free body when the substep began, two each
+    AlignedVector<double> transform;  ///< (lanes x 12) of the clusters
+    std::vector<Vec3> momentum;       ///< linear and angular of each free body when the substep began, two each
 };
 
 SoftBodyState rest_state(const SoftBodyModel& model);

@@ -149,7 +149,7 @@ void compare_sets(Precision precision) {
     wall.step(0.004, 2);
     const auto run = [&](const kernel::Set& set, std::vector<double>& goal) {
         std::vector<double> rotation = wall.state.rotation;
-        std::vector<double> transform(wall.scratch.transform.size());
+        AlignedVector<double> transform(wall.scratch.transform.size());
         const kernel::Groups<double> view = wall.model.clusters.view();
         const kernel::Groups<float> view_float = wall.model.clusters_float.view();
         const double* x = wall.state.x.front().data();
