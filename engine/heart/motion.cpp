@@ -41,6 +41,7 @@ std::vector<HeartKnot> HeartSpec::default_knots(double excursion_mm) {
                                                               {0.87, 0.75},
                                                               {0.96, 0.98}}};
     std::vector<HeartKnot> knots;
+    knots.reserve(shape.size());
     for (const auto& [phase, share] : shape) knots.push_back({phase, share * excursion_mm});
     return knots;
 }
