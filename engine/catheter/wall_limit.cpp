@@ -55,7 +55,7 @@ double allowed_fraction(std::span<const Vec3> previous, std::span<const Vec3> at
 }
 
 CatheterTaken take(const CatheterSpec& spec, const CatheterState& state, const CatheterCommand& command,
-                   const Rail& rail, std::span<const WallLimit> limits, double h, double insertion_limit_mm) {
+                   const Rail& rail, std::span<const WallLimit> wall, double h, double insertion_limit_mm) {
     const std::size_t segments = spec.segments.size();
     const auto tried = [&](const CatheterFraction& fraction) {
         return attempt(spec, state, command, fraction, h, insertion_limit_mm);
@@ -65,7 +65,9 @@ CatheterTaken take(const CatheterSpec& spec, const CatheterState& state, const C
     const CatheterState full = tried(taken.fraction);
     taken.state = full;
     taken.shape = shape(spec, full, rail);
-    if (limits.empty()) return taken;
+    if (wall.empty()) return taken;
+    std::vector<WallLimit> limits(wall.begin(), wall.end());
+    for (WallLimit& limit : limits) limit.penetration_limit *= predicted_share;
 
     const CatheterShape start = shape(spec, state, rail);
     const double common = allowed_fraction(start.points, taken.shape.points, limits);

@@ -61,10 +61,11 @@ TEST(WallLimit, TheTakenPartKeepsThePredictedPenetrationUnderItsLimit) {
     CatheterCommand command;
     command.advance_mm = 0.4;
     const CatheterTaken taken = take(spec, state, command, rail, limits, 0.004);
-    EXPECT_NEAR(taken.state.insertion_mm, 120.1, 1e-9);
-    EXPECT_NEAR(taken.refused, 0.75, 1e-9);
-    EXPECT_NEAR(taken.refused_advance_mm, 0.3, 1e-9);
-    EXPECT_NEAR(taken.shape.tip.position.z(), 120.1, 1e-9);
+    const double room = predicted_share * 0.5 - 0.4;
+    EXPECT_NEAR(taken.state.insertion_mm, 120.0 + room, 1e-9);
+    EXPECT_NEAR(taken.refused, 1.0 - room / 0.4, 1e-9);
+    EXPECT_NEAR(taken.refused_advance_mm, 0.4 - room, 1e-9);
+    EXPECT_NEAR(taken.shape.tip.position.z(), 120.0 + room, 1e-9);
 }
 
 TEST(WallLimit, ABlockedAdvanceDoesNotBlockStraightening) {
@@ -120,5 +121,5 @@ TEST(WallLimit, DrivenAgainstAWallForLongItStaysWithinTheLimit) {
         state = take(spec, state, command, rail, limits, 0.004).state;
     }
     EXPECT_GT(deepest, 0.3);
-    EXPECT_LT(deepest, 0.52);  // curvature of the samples' paths within a substep
+    EXPECT_LT(deepest, 0.5);
 }
