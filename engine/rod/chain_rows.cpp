@@ -15,6 +15,7 @@ constexpr int last_rubbing_pass = 30;     // a row that still leaves its cone th
 constexpr double slide_tolerance = 0.9;   // of the law's force: less is mended while passes last
 constexpr double inside_cone = 0.99;      // of the cone: aim, so that a small loss of normal force leaves a row legal
 constexpr double well_inside_cone = 0.9;  // the same when passes run out
+constexpr double side_drag_per_mm = 1.5;  // holds for hollows of 1 mm radius and wider
 constexpr double cone_tolerance = 1e-9;   // of the cone's half width
 
 Vec3 across(const Vec3& v, const Vec3& normal) {
@@ -39,7 +40,8 @@ void ChainRows::set_rub(Work& w, double load, double slip, double share) const {
     w.rub_with_wall = w.rub / (1.0 + w.rub * w.row.compliance);
 }
 
-void ChainRows::begin(std::span<const ChainRow> rows, std::size_t free_links, double h) {
+void ChainRows::begin(std::span<const ChainRow> rows, std::span<const Vec3> axis, double h) {
+    const std::size_t free_links = axis.size();
     free_links_ = free_links;
     rest_slip_ = creep_mm_s * h;
     work_.assign(rows.size(), Work{});
@@ -54,6 +56,15 @@ void ChainRows::begin(std::span<const ChainRow> rows, std::size_t free_links, do
         const double load = std::max(0.0, w.row.multiplier);
         if (w.active && w.row.friction > 0.0 && load > 0.0)
             set_rub(w, load, across(w.row.slip, w.row.normal).norm(), 1.0);
+        const std::size_t link = static_cast<std::size_t>(w.row.link);
+        if (link < free_links && w.row.multiplier != 0.0) {
+            const Vec3 b = w.row.normal.cross(axis[link]);
+            const double size = b.norm();
+            if (size > 0.1) {
+                w.side << b / size, (axis[link] * axis[link].dot(w.row.arm)).cross(b / size);
+                w.side_stiffness = side_drag_per_mm * std::fabs(w.row.multiplier);
+            }
+        }
         start_[std::min(static_cast<std::size_t>(w.row.link), free_links) + 1] += 1;
     }
     for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
@@ -71,6 +82,10 @@ void ChainRows::add_to(std::size_t link, Mat6& diagonal, Vec6& right) const {
         diagonal += (stiffness * w.jacobian) * w.jacobian.transpose();
         right += w.jacobian * (w.row.multiplier - w.row.gap * stiffness);
         const Vec3& arm = w.row.arm;
+        if (w.side_stiffness > 0.0) {
+            diagonal += (w.side_stiffness * w.side) * w.side.transpose();
+            right -= w.side * (w.side_stiffness * w.side.head<3>().dot(w.row.slip));
+        }
         if (w.rub > 0.0) {
             // B = [P, P [-arm]x]: P (dx + dtheta x arm)
             Mat3 hat;
@@ -144,6 +159,17 @@ std::size_t ChainRows::update(const std::vector<Vec6>& solution, int pass) {
         if (changed && first == free_links_) first = i;
     }
     return first;
+}
+
+Vec3 ChainRows::side_force(const std::vector<Vec6>& solution) const {
+    Vec3 sum = Vec3::Zero();
+    for (const Work& w : work_) {
+        if (!w.active || w.side_stiffness == 0.0) continue;
+        const Vec3 b = w.side.head<3>();
+        const double slip = b.dot(w.row.slip) + w.side.dot(solution[static_cast<std::size_t>(w.row.link)]);
+        sum -= w.side_stiffness * slip * b;
+    }
+    return sum;
 }
 
 void ChainRows::end(std::span<ChainRow> rows) const {

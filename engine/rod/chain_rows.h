@@ -8,6 +8,11 @@
 // way sideways as it does along the normal.  k = mu lambda' / max(|s'|, s_0), s_0 = 0.5 mm/s x h, makes this Coulomb's
 // law, smooth at rest (as in [li2020]); k is found over the passes.  A force that is linear in the slip inside the
 // solve can never turn a light link round, as a constant sliding force would.
+//
+// Side drag: a wall is hollow across the wire, so a contact force holds the wire in the hollow like a spring lambda / R
+// that the frozen normal hides from the solve; stepped explicitly it throws a light wire from side to side.  Blood
+// takes the swing out: motion of the axis along b = n x wire, against the wall, feels -side_drag lambda b b^T s.  It is
+// nothing at rest and belongs to neither the multiplier nor the friction (Rod::drag_mn reports it).
 #pragma once
 
 #include <span>
@@ -19,8 +24,9 @@ namespace cathlab {
 
 class ChainRows {
 public:
-    /// Takes the rows; free_links = number of links that can move.  Throws std::logic_error for an illegal row.
-    void begin(std::span<const ChainRow> rows, std::size_t free_links, double h);
+    /// Takes the rows.  Throws std::logic_error for an illegal row.
+    /// axis = the links' unit axes, one a free link.
+    void begin(std::span<const ChainRow> rows, std::span<const Vec3> axis, double h);
 
     /// Adds the rows of link i in their current state to its block.
     void add_to(std::size_t link, Mat6& diagonal, Vec6& right) const;
@@ -30,6 +36,9 @@ public:
     /// may engage and release rows, later ones only take force away, so that the loop ends.
     std::size_t update(const std::vector<Vec6>& solution, int pass);
 
+    /// Sum of the side drags' forces on the links in the last update, mN.
+    Vec3 side_force(const std::vector<Vec6>& solution) const;
+
     /// Writes multipliers and friction forces of the last update.
     void end(std::span<ChainRow> rows) const;
 
@@ -38,9 +47,11 @@ private:
         ChainRow row;
         Vec6 jacobian;
         bool active = false;
-        double rub = 0.0;            // k, mN/mm
-        double rub_with_wall = 0.0;  // k / (1 + k c)
-        double multiplier = 0.0;     // found
+        double rub = 0.0;             // k, mN/mm
+        double rub_with_wall = 0.0;   // k / (1 + k c)
+        Vec6 side;                    // [b, arm x b]
+        double side_stiffness = 0.0;  // mN/mm
+        double multiplier = 0.0;      // found
         Vec3 tangent = Vec3::Zero();
     };
 

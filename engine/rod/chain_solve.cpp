@@ -4,8 +4,12 @@
 //
 // Joint between link a (nearer to the tip) and b behind it, arms r_a = -(L_a / 2) t_a, r_b = +(L_b / 2) t_b:
 //   gap    g = x_b + r_b - x_a - r_a                                  energy k/2 |g|^2, k = EA / span
-//   bend   C = 2 Im(q_a^* q_b rest^*) = 2 v, with w = the real part   energy 1/2 C^T K C, K = diag(EI, EI, GJ) / span
-//   dC = (w I - [v]x) R_a^T (dtheta_b - dtheta_a)                     in a's material frame
+//   bend   e = t_b - u,  u = R_a rest z, where t_b should point        energy k/2 |e|^2, k = EI / span
+//          de = dtheta_b x t_b - dtheta_a x u
+//   twist  c = 2 Im(q_a^* q_b rest^*)_z = 2 v_z                        energy k/2 c^2, k = GJ / span
+//          dc = g . (dtheta_b - dtheta_a),  g = R_a (v_y, -v_x, w), with w the real part
+// The bend is taken from the tangents: as two components of 2 v it would be the same energy, but its linearisation lets
+// a bent wire trade bending for turning about itself, and a wire that is turned then flutters.
 // Second derivatives are left out (Gauss-Newton: the system stays positive definite) but for the string stiffness of a
 // joint under tension T, T L / 2 (I - t t^T) on a link's rotation: without it a pulled wire would be stepped
 // explicitly.
@@ -35,9 +39,9 @@ Vec3 turn(const Quat& from, const Quat& to) {
 
 struct JointNow {
     Vec3 ta, tb, ra, rb, gap;
-    Vec3 v, g3;      // v in the world frame; third row of (w I - [v]x) R_a^T
-    double w = 1.0;  // real part
-    Vec3 moment;     // on a, from the bend: (w I + [v]x)^... K C in the world frame
+    Vec3 u, g;
+    double twist = 0.0;  // c
+    Vec3 moment;         // of bend and twist, on a
 };
 
 JointNow joint_now(const Vec3& xa, const Quat& qa, double la, const Vec3& xb, const Quat& qb, double lb,
@@ -49,14 +53,13 @@ JointNow joint_now(const Vec3& xa, const Quat& qa, double la, const Vec3& xb, co
     j.ra = (-0.5 * la) * j.ta;
     j.rb = (0.5 * lb) * j.tb;
     j.gap = xb + j.rb - xa - j.ra;
-    Quat delta = qa.conjugate() * qb * s.rest.conjugate();
+    j.u = s.curved ? Vec3(frame * (s.rest * Vec3::UnitZ())) : j.ta;
+    Quat delta = qa.conjugate() * qb;
+    if (s.curved) delta = delta * s.rest.conjugate();
     if (delta.w() < 0.0) delta.coeffs() = -delta.coeffs();
-    const Vec3 v = delta.vec();
-    j.w = delta.w();
-    j.v = frame * v;
-    j.g3 = frame * Vec3(v.y(), -v.x(), j.w);
-    const Vec3 u(2.0 * s.bend * v.x(), 2.0 * s.bend * v.y(), 2.0 * s.twist * v.z());
-    j.moment = frame * (j.w * u + v.cross(u));  // G^T K C
+    j.g = frame * Vec3(delta.y(), -delta.x(), delta.w());
+    j.twist = 2.0 * delta.z();
+    j.moment = s.bend * j.u.cross(j.tb) + (s.twist * j.twist) * j.g;
     return j;
 }
 
@@ -69,33 +72,31 @@ void Rod::Impl::assemble_joint(std::size_t i, std::size_t free) {
     const JointNow j = joint_now(x[i], q[i], la, x[b], q[b], lb, s);
     const double k = s.axial;
     const Vec3 pull = k * j.gap;
-    // G^T K G = k_bend (I - v v^T) + (k_twist - k_bend) g3 g3^T, since w^2 + |v|^2 = 1.
-    const Mat3 bend =
-        s.bend * (Mat3::Identity() - j.v * j.v.transpose()) + (s.twist - s.bend) * j.g3 * j.g3.transpose();
+    const Mat3 twist = s.twist * j.g * j.g.transpose();
     const double string = 0.5 * std::max(0.0, tension[i]);
-    const auto rotation_block = [&](const Vec3& r, const Vec3& t, double length) {
-        Mat3 m = (k * r.squaredNorm() + string * length) * Mat3::Identity() + bend;
-        m.noalias() -= k * r * r.transpose() + (string * length) * t * t.transpose();
-        return m;
-    };
-    const auto add = [&](std::size_t link, const Vec3& r, const Vec3& t, double length) {
+    const auto add = [&](std::size_t link, const Vec3& r, const Vec3& t, const Vec3& pointer, double length) {
         Mat6& d = system.diagonal[link];
         d.topLeftCorner<3, 3>().diagonal().array() += k;
         d.bottomLeftCorner<3, 3>() += k * hat(r);
-        d.bottomRightCorner<3, 3>() += rotation_block(r, t, length);
+        Mat3 m = twist - k * r * r.transpose() - (string * length) * t * t.transpose() -
+                 s.bend * pointer * pointer.transpose();
+        m.diagonal().array() += k * r.squaredNorm() + string * length + s.bend;
+        d.bottomRightCorner<3, 3>() += m;
     };
-    add(i, j.ra, j.ta, la);
+    add(i, j.ra, j.ta, j.u, la);
     system.right[i].head<3>() += pull;
     system.right[i].tail<3>() += j.ra.cross(pull) + j.moment;
     if (b >= free) return;
-    add(b, j.rb, j.tb, lb);
+    add(b, j.rb, j.tb, j.tb, lb);
     system.right[b].head<3>() -= pull;
     system.right[b].tail<3>() -= j.rb.cross(pull) + j.moment;
     Mat6& e = system.below[i];
     e.topLeftCorner<3, 3>() = -k * Mat3::Identity();
     e.topRightCorner<3, 3>() = k * hat(j.ra);
     e.bottomLeftCorner<3, 3>() = -k * hat(j.rb);
-    e.bottomRightCorner<3, 3>() = -k * (j.ra.dot(j.rb) * Mat3::Identity() - j.ra * j.rb.transpose()) - bend;
+    Mat3 m = k * j.ra * j.rb.transpose() + s.bend * j.u * j.tb.transpose() - twist;
+    m.diagonal().array() -= k * j.ra.dot(j.rb) + s.bend * j.u.dot(j.tb);
+    e.bottomRightCorner<3, 3>() = m;
 }
 
 void Rod::Impl::assemble(double h) {
@@ -136,7 +137,7 @@ std::size_t Rod::Impl::update_brakes(double h) {
 
 // Moves the links and keeps the joints' forces as the linear system had them: after the move the stiff springs' own
 // lengths would show the second order of the rotations instead.
-void Rod::Impl::apply_solution() {
+void Rod::Impl::apply_solution(double h) {
     const std::size_t free = free_count();
     for (std::size_t i = 0; i < free; ++i) {
         const JointStiffness& s = world.joint(i);
@@ -148,14 +149,15 @@ void Rod::Impl::apply_solution() {
         const Vec3 pull = s.axial * gap;  // on a
         tension[i] = -pull.dot(j.ta + j.tb) * 0.5;
         if (b < free) continue;
-        const Vec3 relative = -da.tail<3>();
-        const Vec3 moment =
-            j.moment + s.bend * (relative - j.v * j.v.dot(relative)) + (s.twist - s.bend) * j.g3 * j.g3.dot(relative);
+        const Vec3 turned = da.tail<3>();
+        const Vec3 moment = j.moment - s.bend * (turned - j.u * j.u.dot(turned)) - s.twist * j.g * j.g.dot(turned);
         sheath_reaction = pull;
         sheath_torque = moment.dot(sheath.mouth.orientation * Vec3::UnitZ());
     }
+    drag = rows.side_force(system.solution);
     for (std::size_t i = 0; i < free; ++i) {
         x[i] += system.solution[i].head<3>();
+        drag -= (links[i].mass * spec.damping_per_s / h + brake[i]) * (x[i] - x_start[i]);
         q[i] = det::rotation_from_vector(system.solution[i].tail<3>()) * q[i];
         q[i].normalize();
     }
@@ -167,7 +169,9 @@ void Rod::solve(double h, std::span<ChainRow> chain_rows) {
     for (const ChainRow& row : chain_rows)
         CATHLAB_CHECK(row.link >= 0 && static_cast<std::size_t>(row.link) < m.count(), "a chain row names no link");
     m.assemble(h);
-    m.rows.begin(chain_rows, free, h);
+    m.axis.resize(free);
+    for (std::size_t i = 0; i < free; ++i) m.axis[i] = m.q[i] * Vec3::UnitZ();
+    m.rows.begin(chain_rows, m.axis, h);
     m.diagonal = m.system.diagonal;
     m.right = m.system.right;
     m.brake.assign(free, 0.0);
@@ -187,7 +191,7 @@ void Rod::solve(double h, std::span<ChainRow> chain_rows) {
         if (pass < braking_passes) first = std::min(first, m.update_brakes(h));
     }
     m.rows.end(chain_rows);
-    m.apply_solution();
+    m.apply_solution(h);
 }
 
 double Rod::max_stretch() const {
@@ -215,9 +219,8 @@ double Rod::energy_uj() const {
                       link.inertia_across * across2);
         const JointStiffness& s = m.world.joint(i);
         const JointNow j = joint_now(m.x[i], m.q[i], link.length, m.x[i + 1], m.q[i + 1], m.links[i + 1].length, s);
-        const Vec3 v = m.q[i].conjugate() * j.v;
-        sum += 0.5 * s.axial * j.gap.squaredNorm() +
-               2.0 * (s.bend * (v.x() * v.x() + v.y() * v.y()) + s.twist * v.z() * v.z());
+        sum +=
+            0.5 * (s.axial * j.gap.squaredNorm() + s.bend * (j.tb - j.u).squaredNorm() + s.twist * j.twist * j.twist);
     }
     return sum;
 }

@@ -206,6 +206,9 @@ double Rod::sheath_force_mn() const {
 double Rod::sheath_torque_mn_mm() const {
     return impl_->sheath_torque;
 }
+Vec3 Rod::drag_mn() const {
+    return impl_->drag;
+}
 const WireSpec& Rod::spec() const {
     return impl_->spec;
 }

@@ -85,6 +85,11 @@ public:
     double sheath_force_mn() const;
     double sheath_torque_mn_mm() const;
 
+    /// What blood does to the free wire, from the last solve, mN: damping_per_s, the brake on a link that would travel
+    /// further than max_travel_mm(), and the side drag in a contact (chain_rows.h).  Rows, sheath, link_force and this
+    /// make up the wire's change of momentum exactly, but for a prediction that was shortened.
+    Vec3 drag_mn() const;
+
     double max_stretch() const;  ///< largest opening of a free joint over the material that it stands for
     double energy_uj() const;    ///< kinetic energy plus that of the joints
     static double max_travel_mm() { return 0.8; }  ///< a free link's predicted travel in a substep, and an advance

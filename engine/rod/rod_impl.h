@@ -25,9 +25,11 @@ struct Rod::Impl {
     std::vector<double> tension;
     Vec3 sheath_reaction = Vec3::Zero();
     double sheath_torque = 0.0;
+    Vec3 drag = Vec3::Zero();
 
     BlockChain system;
     ChainRows rows;
+    std::vector<Vec3> axis;      // of the free links
     std::vector<Mat6> diagonal;  // the blocks before rows and brakes
     std::vector<Vec6> right;
     std::vector<double> brake;  // mN/mm against a link's travel, see update_brakes
@@ -43,7 +45,7 @@ struct Rod::Impl {
     void assemble(double h);
     void assemble_joint(std::size_t i, std::size_t free);
     std::size_t update_brakes(double h);
-    void apply_solution();
+    void apply_solution(double h);
 };
 
 }  // namespace cathlab

@@ -53,7 +53,8 @@ JointStiffness joint_stiffness(const WireLink& a, const WireLink& b, double inse
     JointStiffness joint;
     joint.span = free_a + free_b;
     const double angle = a.curvature * free_a + b.curvature * free_b;
-    if (angle != 0.0) joint.rest = det::rotation_from_vector(Vec3(angle, 0.0, 0.0));
+    joint.curved = angle != 0.0;
+    if (joint.curved) joint.rest = det::rotation_from_vector(Vec3(angle, 0.0, 0.0));
     const double least = least_free_share * (half_a + half_b);
     if (joint.span < least) {
         free_a = least * half_a / (half_a + half_b);

@@ -29,6 +29,7 @@ std::vector<WireLink> cut_into_links(const WireSpec& spec);
 struct JointStiffness {
     double axial = 0.0, bend = 0.0, twist = 0.0;
     Quat rest = Quat::Identity();  ///< q_b = q_a * rest when unloaded
+    bool curved = false;           ///< rest is not the identity
     double span = 0.0;             ///< free material that the joint stands for, mm
 };
 

@@ -17,12 +17,6 @@ Vec3 momentum(const Rod& rod) {
     return p;
 }
 
-WireSpec undamped(WireSpec spec) {
-    spec.damping_per_s = 0.0;
-    spec.spin_damping_per_s = 0.0;
-    return spec;
-}
-
 ChainRow row_at(Index link, const Vec3& normal, double gap, double compliance) {
     ChainRow row;
     row.link = link;
@@ -57,8 +51,8 @@ TEST(Row, AStopUnderTheTipReturnsTheForceThatPressesIt) {
     EXPECT_NEAR(rod.link_pose(0).position.y() - rest.y(), stop, 1e-9);
 }
 
-TEST(Row, ForcesOfRowsAndSheathMakeUpTheChangeOfMomentum) {
-    Rod rod(undamped(test::amplatz()), {}, 200.0);
+TEST(Row, ForcesOfRowsSheathAndBloodMakeUpTheChangeOfMomentum) {
+    Rod rod(test::amplatz(), {}, 200.0);
     const double h = 0.004;
     for (int step = 0; step < 200; ++step) {
         std::vector<ChainRow> rows;
@@ -75,7 +69,7 @@ TEST(Row, ForcesOfRowsAndSheathMakeUpTheChangeOfMomentum) {
         rod.solve(h, rows);
         rod.solve(h, rows);
         rod.finish(h);
-        Vec3 force = rod.sheath_reaction_mn();
+        Vec3 force = rod.sheath_reaction_mn() + rod.drag_mn();
         double size = force.norm();
         for (const ChainRow& row : rows) {
             force += row.multiplier * row.normal + row.tangent_force;
