@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/check.h"
 
@@ -69,19 +70,45 @@ double solid_chord(const ChordPiece& p, const Vec3& axis, const Vec3& origin, co
 }
 
 struct Box {
-    int x0, x1, y0, y1;  // half open
+    int x0 = 0, x1 = 0, y0 = 0, y1 = 0;  // pixels, half open
+    // The axis on the picture: pixels farther than reach from it cannot be met.
+    Vec2 start = Vec2::Zero(), axis = Vec2::Zero(), normal = Vec2::Zero();
+    double reach = 0, from = -1e9, to = 1e9;  // along the axis: between from and to
+
+    bool holds(double x, double y) const {
+        const double s = (Vec2(x, y) - start).dot(axis);
+        return s >= from && s <= to;
+    }
+};
+
+// What one ray's test needs of a piece, once for all rays from the same source.
+struct Prepared {
+    Vec3 axis, offset;  // offset = source - a
+    double along, c;    // offset . axis; squared distance of the source from the axis - r^2
+
+    Prepared(const ChordPiece& piece, const Vec3& source)
+        : axis((piece.b - piece.a).normalized()), offset(source - piece.a), along(offset.dot(axis)) {
+        c = (offset - along * axis).squaredNorm() - piece.radius * piece.radius;
+    }
+    // Sign of the discriminant of |offset + t d - (along the axis)|^2 = r^2.
+    bool near_axis(const Vec3& d) const {
+        const double da = d.dot(axis);
+        const double half_b = offset.dot(d) - along * da;
+        return half_b * half_b > (d.squaredNorm() - da * da) * c;
+    }
 };
 
 Box pixel_box(const ChordPiece& p, const Projection& projection) {
-    double x0 = std::numeric_limits<double>::infinity(), y0 = x0, x1 = -x0, y1 = -x0;
+    double x0 = std::numeric_limits<double>::infinity(), y0 = x0, x1 = -x0, y1 = -x0, reach_px_max = 0;
     for (const auto& [end, plane] : {std::pair(p.a, p.plane_a), std::pair(p.b, p.plane_b)}) {
         // The mitre reaches r / cos(half the bend) from the axis.
         const Vec3 axis = (p.b - p.a).normalized();
         const double lean = std::max(0.2, std::fabs(plane.dot(axis)));
         const double reach = p.radius / lean;
         const double depth = projection.depth(end) - reach;
-        if (depth < 1.0) return {0, 0, 0, 0};
+        if (depth < 1.0) return {};
         const double reach_px = 1.05 * reach * projection.source_detector_mm() / depth / projection.pixel_mm() + 1.0;
+        reach_px_max = std::max(reach_px_max, reach_px);
         const Vec2 at = projection.pixel(end);
         x0 = std::min(x0, at.x() - reach_px);
         x1 = std::max(x1, at.x() + reach_px);
@@ -91,8 +118,37 @@ Box pixel_box(const ChordPiece& p, const Projection& projection) {
     const auto inside = [](double v, int limit) {
         return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(limit)));
     };
-    return {inside(std::floor(x0), projection.width()), inside(std::ceil(x1), projection.width()),
+    Box box{inside(std::floor(x0), projection.width()), inside(std::ceil(x1), projection.width()),
             inside(std::floor(y0), projection.height()), inside(std::ceil(y1), projection.height())};
+    box.start = projection.pixel(p.a);
+    const Vec2 run = projection.pixel(p.b) - box.start;
+    if (run.norm() > 1.0) {
+        box.axis = run.normalized();
+        box.normal = Vec2(-box.axis.y(), box.axis.x());
+        // How far an end sticks out: its slanted plane, its ball, or the disc seen from the side.
+        const Vec3 axis = (p.b - p.a).normalized();
+        const double tilt = std::fabs(axis.dot((p.a - projection.source()).normalized()));
+        const double scale = reach_px_max / p.radius;
+        const auto margin = [&](const Vec3& plane, bool ball) {
+            const double lean = std::fabs(plane.dot(axis));
+            const double slant = std::sqrt(std::max(0.0, 1 - lean * lean)) / std::max(0.2, lean);
+            return 1.5 + (ball ? 1.0 : std::min(1.0, tilt + slant)) * p.radius * scale;
+        };
+        box.from = -margin(p.plane_a, p.ball_a);
+        box.to = run.norm() + margin(p.plane_b, p.ball_b);
+    }
+    box.reach = reach_px_max;
+    return box;
+}
+
+// Columns of the row at height y whose pixels lie within reach of the axis.
+std::pair<int, int> columns_of(const Box& box, double y) {
+    if (std::fabs(box.normal.x()) < 1e-6) return {box.x0, box.x1};
+    const double middle = box.start.x() - (y - box.start.y()) * box.normal.y() / box.normal.x();
+    const double half = (box.reach + 1.0) / std::fabs(box.normal.x());
+    const double first = std::max<double>(box.x0, std::floor(middle - half));
+    const double last = std::min<double>(box.x1, std::ceil(middle + half));
+    return first < last ? std::pair(static_cast<int>(first), static_cast<int>(last)) : std::pair(0, 0);
 }
 
 }  // namespace
@@ -143,9 +199,11 @@ void draw_devices(const std::vector<ChordPiece>& pieces, int media, const Projec
     const int height = projection.height();
     const std::size_t width = static_cast<std::size_t>(projection.width());
     std::vector<Box> boxes;
+    std::vector<Prepared> prepared;
     std::vector<std::vector<std::uint32_t>> pieces_of_row(static_cast<std::size_t>(height));
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         boxes.push_back(pixel_box(pieces[i], projection));
+        prepared.emplace_back(pieces[i], projection.source());
         if (boxes[i].x0 >= boxes[i].x1) continue;
         for (int y = boxes[i].y0; y < boxes[i].y1; ++y) {
             pieces_of_row[static_cast<std::size_t>(y)].push_back(static_cast<std::uint32_t>(i));
@@ -158,7 +216,6 @@ void draw_devices(const std::vector<ChordPiece>& pieces, int media, const Projec
     };
     std::vector<Row> rows(static_cast<std::size_t>(height));
     const auto per_pixel = static_cast<std::size_t>(media);
-    const double share = 1.0 / (samples * samples);
     workers.for_ranges(rows.size(), 8, [&](std::size_t begin, std::size_t end) {
         std::vector<double> sums(width * per_pixel);
         std::vector<std::uint8_t> touched(width);
@@ -168,13 +225,19 @@ void draw_devices(const std::vector<ChordPiece>& pieces, int media, const Projec
             std::fill(touched.begin(), touched.end(), std::uint8_t{0});
             for (const std::uint32_t i : pieces_of_row[y]) {
                 const ChordPiece& piece = pieces[i];
-                // Pixels of this row whose rays can come near the piece's axis.
-                for (int x = boxes[i].x0; x < boxes[i].x1; ++x) {
+                const Prepared& test = prepared[i];
+                const auto [first, last] = columns_of(boxes[i], static_cast<double>(y) + 0.5);
+                // A thick piece changes little within a pixel.
+                const int side = boxes[i].reach > 4.0 ? std::min(2, samples) : samples;
+                const double share = 1.0 / (side * side);
+                for (int x = first; x < last; ++x) {
+                    if (!boxes[i].holds(x + 0.5, static_cast<double>(y) + 0.5)) continue;
                     double sum = 0;
-                    for (int s = 0; s < samples * samples; ++s) {
-                        const double px = x + (s % samples + 0.5) / samples;
-                        const double py = static_cast<double>(y) + (s / samples + 0.5) / samples;
-                        sum += chord(piece, projection.source(), projection.ray(px, py));
+                    for (int k = 0; k < side * side; ++k) {
+                        const double px = x + (k % side + 0.5) / side;
+                        const double py = static_cast<double>(y) + (k / side + 0.5) / side;
+                        const Vec3 d = projection.to_detector(px, py);
+                        if (test.near_axis(d)) sum += chord(piece, projection.source(), d.normalized());
                     }
                     if (sum <= 0) continue;
                     const auto column = static_cast<std::size_t>(x);

@@ -32,9 +32,10 @@ double chord(const ChordPiece& piece, const Vec3& origin, const Vec3& direction)
 struct DeviceLengths {
     int media = 0;
     std::vector<std::uint32_t> pixel;  ///< y * width + x, ascending
-    std::vector<float> length_mm;      ///< (pixels x media) mean over the pixel's area by samples x samples rays
+    std::vector<float> length_mm;      ///< (pixels x media) mean over the pixel's area
 };
 
+/// Thin pieces take samples x samples rays a pixel, pieces over some pixels wide at most 2 x 2.
 /// Rows are shared out among the workers; each pixel sums its pieces in their order, so the bits do not depend on
 /// threads.
 void draw_devices(const std::vector<ChordPiece>& pieces, int media, const Projection& projection, int samples,

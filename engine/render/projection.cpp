@@ -36,10 +36,6 @@ Vec2 Projection::pixel(const Vec3& p_world) const {
     return {(hit.dot(right_) / mm_w_ + 0.5) * width_, (hit.dot(down_) / mm_h_ + 0.5) * height_};
 }
 
-Vec3 Projection::to_detector(double x, double y) const {
-    return center_ + right_ * ((x / width_ - 0.5) * mm_w_) + down_ * ((y / height_ - 0.5) * mm_h_);
-}
-
 Vec3 Projection::ray(double x, double y) const {
     return to_detector(x, y).normalized();
 }

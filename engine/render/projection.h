@@ -24,7 +24,9 @@ public:
     /// Unit vector from the source through a pixel coordinate.
     Vec3 ray(double x, double y) const;
     /// Point of the detector plane at a pixel coordinate, relative to the source.
-    Vec3 to_detector(double x, double y) const;
+    Vec3 to_detector(double x, double y) const {
+        return center_ + right_ * ((x / width_ - 0.5) * mm_w_) + down_ * ((y / height_ - 0.5) * mm_h_);
+    }
 
     const Vec3& source() const { return source_; }
     const Vec3& normal() const { return normal_; }  ///< unit, from source to detector

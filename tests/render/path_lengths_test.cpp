@@ -1,0 +1,175 @@
+#include "render/path_lengths.h"
+
+#include <gtest/gtest.h>
+
+#include "core/errors.h"
+#include "render/gl_device.h"
+#include "render/gl_target.h"
+#include "render/path_surface.h"
+#include "scene.h"
+
+namespace cathlab {
+namespace {
+
+using namespace testing_shapes;
+
+class PathLength : public testing::Test {
+protected:
+    static PathLengths draw(const CArmView& view, const std::vector<TriMesh>& meshes, int size = 256,
+                            const std::vector<double>& values = {}) {
+        static const auto device = std::make_shared<GlDevice>(make_osmesa_target());
+        static PathLengthBuffer buffer(device);
+        std::vector<std::unique_ptr<PathSurface>> kept;
+        std::vector<const PathSurface*> surfaces;
+        for (const TriMesh& mesh : meshes) {
+            kept.push_back(buffer.make_surface());
+            buffer.set_triangles(*kept.back(), mesh.triangles);
+            buffer.set_vertices(*kept.back(), mesh.vertices, values);
+            surfaces.push_back(kept.back().get());
+        }
+        PathLengths out;
+        buffer.draw(Projection(view, size, size), surfaces, out);
+        return out;
+    }
+};
+
+// Mean and largest |error| of drawn path lengths against a closed form, relative to `scale`, where the truth is above
+// `least`.
+template <class Truth>
+std::pair<double, double> errors(const PathLengths& drawn, const Projection& projection, double least, double scale,
+                                 const Truth& truth) {
+    double sum = 0, largest = 0;
+    int count = 0;
+    for (int y = 0; y < projection.height(); ++y) {
+        for (int x = 0; x < projection.width(); ++x) {
+            const double t = truth(projection.source(), projection.ray(x + 0.5, y + 0.5));
+            if (t < least) continue;
+            const double error = std::fabs(drawn.length_mm.at(x, y) - t) / scale;
+            sum += error;
+            largest = std::max(largest, error);
+            ++count;
+        }
+    }
+    return {count > 0 ? sum / count : 1e9, largest};
+}
+
+TEST_F(PathLength, ASlabSeenAtAnyAngleIsItsThicknessOverTheCosine) {
+    for (const double angle : {-50.0, 0.0, 25.0, 60.0}) {
+        const CArmView v = view(angle, 60);
+        const PathLengths drawn = draw(v, {box({-300, -20, -300}, {300, 30, 300})});
+        const auto [mean, largest] = errors(drawn, Projection(v, 256, 256), 1, 50,
+                                            [](const Vec3&, const Vec3& d) { return 50.0 / std::fabs(d.y()); });
+        EXPECT_LT(mean, 1e-4) << angle;
+        EXPECT_LT(largest, 1e-4) << angle;
+        EXPECT_EQ(drawn.bad_pixels, 0U);
+    }
+}
+
+TEST_F(PathLength, ASphereIsItsChordAndTheErrorIsSecondOrder) {
+    const CArmView v = view(30, 160);
+    const Vec3 center(5, -3, 8);
+    const auto truth = [&](const Vec3& o, const Vec3& d) { return ball_chord(o, d, center, 40); };
+    const Projection projection(v, 256, 256);
+    const double fine = errors(draw(v, {sphere(center, 40, 70)}), projection, 0.1, 80, truth).first;
+    const double coarse = errors(draw(v, {sphere(center, 40, 35)}), projection, 0.1, 80, truth).first;
+    EXPECT_LT(fine, 1e-3);
+    EXPECT_NEAR(coarse / fine, 4.0, 0.6);
+}
+
+TEST_F(PathLength, ACylinderIsItsChord) {
+    const CArmView v = view(-20, 80);
+    const PathLengths drawn = draw(v, {cylinder(Vec3::Zero(), 15, 400, 160)});
+    const auto truth = [](const Vec3& o, const Vec3& d) {
+        const Vec3 flat(d.x(), d.y(), 0), from(o.x(), o.y(), 0);
+        const double across = std::fabs(from.x() * flat.y() - from.y() * flat.x()) / flat.norm();
+        return across < 15 ? 2 * std::sqrt(225 - across * across) / flat.norm() : 0.0;
+    };
+    EXPECT_LT(errors(drawn, Projection(v, 256, 256), 0.1, 30, truth).first, 1e-3);
+}
+
+TEST_F(PathLength, TwoSurfacesAddAndNestedOnesAreCountedTwice) {
+    const CArmView v = view(0, 160);
+    const PathLengths drawn = draw(v, {sphere(Vec3::Zero(), 40, 70), sphere(Vec3(6, 2, 4), 15, 50)});
+    const auto truth = [](const Vec3& o, const Vec3& d) {
+        return ball_chord(o, d, Vec3::Zero(), 40) + ball_chord(o, d, Vec3(6, 2, 4), 15);
+    };
+    EXPECT_LT(errors(drawn, Projection(v, 256, 256), 0.1, 80, truth).first, 1e-3);
+    EXPECT_EQ(drawn.bad_pixels, 0U);
+}
+
+TEST_F(PathLength, AHoleIsCountedAndDrawsNothing) {
+    TriMesh open = sphere(Vec3::Zero(), 30, 20);
+    open.triangles.erase(open.triangles.begin() + 800, open.triangles.begin() + 806);
+    const PathLengths drawn = draw(view(0, 120), {open});
+    EXPECT_GT(drawn.bad_pixels, 3U);
+    for (const float length : drawn.length_mm.values) EXPECT_LT(std::fabs(length), 61.0F);
+}
+
+TEST_F(PathLength, ContrastMediumIsItsConcentrationTimesThePath) {
+    const CArmView v = view(10, 120);
+    const TriMesh ball = sphere(Vec3::Zero(), 30, 40);
+    const PathLengths even = draw(v, {ball}, 128, std::vector<double>(ball.vertices.size(), 50.0));
+    std::vector<double> ramp;  // along the axis of view: the integral needs the trapezoid
+    const Vec3 axis = (v.detector_center - v.source).normalized();
+    for (const Vec3& p : ball.vertices) ramp.push_back(40 + p.dot(axis));
+    const PathLengths sloped = draw(v, {ball}, 128, ramp);
+    const Projection projection(v, 128, 128);
+    for (const int y : {40, 64, 90}) {
+        for (const int x : {50, 64, 70}) {
+            const double length = even.length_mm.at(x, y);
+            EXPECT_NEAR(even.contrast_mm_mg_ml.at(x, y), 50 * length, 0.01 * length);
+            const Vec3 d = projection.ray(x + 0.5, y + 0.5);
+            const Vec3 middle = projection.source() - projection.source().dot(d) * d;  // of the chord
+            EXPECT_NEAR(sloped.contrast_mm_mg_ml.at(x, y), (40 + middle.dot(axis)) * length, 0.5 * length);
+        }
+    }
+}
+
+TEST(Projection, AFiducialFallsWhereThePinholeSays) {
+    const CArmView v = view(35, 200);
+    const Projection projection(v, 512, 512);
+    const Vec3 p(20, -15, 33);
+    const double a = 35 * units::deg;
+    // In the C-arm's frame: s across, t down, depth from the source.
+    const double s = std::cos(a) * p.x() + std::sin(a) * p.y();
+    const double depth = 800 + std::sin(a) * p.x() - std::cos(a) * p.y();
+    const Vec2 truth((s * 1200 / depth / 200 + 0.5) * 512, (-p.z() * 1200 / depth / 200 + 0.5) * 512);
+    EXPECT_LT((projection.pixel(p) - truth).norm(), 1e-9);
+    const Vec3 back = projection.ray(truth.x(), truth.y());
+    EXPECT_LT((p - v.source).cross(back).norm(), 1e-9);
+}
+
+TEST_F(PathLength, AFiducialsShadowLiesWithinATenthOfAPixel) {
+    const CArmView v = view(35, 200);
+    const Projection projection(v, 512, 512);
+    const Vec3 p(20, -15, 33);
+    const PathLengths drawn = draw(v, {sphere(p, 4, 40)}, 512);
+    Vec2 sum = Vec2::Zero();
+    double weight = 0;
+    for (int y = 0; y < 512; ++y) {
+        for (int x = 0; x < 512; ++x) {
+            sum += drawn.length_mm.at(x, y) * Vec2(x + 0.5, y + 0.5);
+            weight += drawn.length_mm.at(x, y);
+        }
+    }
+    EXPECT_LT((sum / weight - projection.pixel(p)).norm(), 0.1);
+}
+
+TEST(Projection, ImpossibleGeometryIsRefused) {
+    CArmView v = view(0, 200);
+    v.width_mm = 0;
+    EXPECT_THROW(Projection(v, 512, 512), UserError);
+    v = view(0, 200);
+    v.detector_center = v.source;
+    EXPECT_THROW(Projection(v, 512, 512), UserError);
+    v = view(0, 200);
+    v.right *= 1.5;
+    EXPECT_THROW(Projection(v, 512, 512), UserError);
+}
+
+TEST(Target, AnUnknownNameIsTheUsersMistake) {
+    EXPECT_THROW(make_gl_target("osmessa"), UserError);
+}
+
+}  // namespace
+}  // namespace cathlab
