@@ -123,7 +123,7 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
 
     // 2. Contacts, against the wall where it is predicted to be.
     p.stage("contact");
-    update(*p.surface, state.x, *p.surface_state, workers);
+    update(*p.surface, scratch.start, *p.surface_state, workers);
     refresh_samples(p, samples);
     p.contacts->detect(*p.surface, *p.surface_state, samples.list, p.settings->contact_margin_mm, scratch.start,
                        scratch.compliance, workers);
