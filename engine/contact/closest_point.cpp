@@ -10,12 +10,11 @@
 namespace cathlab {
 namespace {
 
-constexpr double on_surface_mm = 1e-6;     ///< nearer than this p - q has no direction
-constexpr double patch_slack_mm = 0.5;     ///< bridges the bumps of a coarse mesh between the hint and the near wall
-constexpr double hint_reach_mm = 6.0;      ///< a hint further away belongs to another part of the run
-constexpr std::size_t patch_limit = 1024;  ///< triangles of a patch; breadth first, so what is cut off is far
-constexpr double wedge_cosine = 0.5;       ///< walls count as different when their directions differ by 60 degrees
-constexpr double foot_cosine = 0.866;      ///< 30 degrees
+constexpr double on_surface_mm = 1e-6;       ///< nearer than this p - q has no direction
+constexpr double patch_slack_mm = 0.5;       ///< bridges the bumps of a coarse mesh between the hint and the near wall
+constexpr double hint_reach_mm = 6.0;        ///< a hint further away belongs to another part of the run
+constexpr std::size_t patch_limit = 1024;    ///< triangles of a patch; breadth first, so what is cut off is far
+constexpr double other_wall_cosine = 0.906;  ///< walls count as different when they differ by 25 degrees
 
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
@@ -188,7 +187,8 @@ std::optional<SurfacePoint> first_exit(const LumenSurfaceModel& model, const Lum
 }
 
 std::vector<SurfacePoint> further_walls(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p,
-                                        double reach, const SurfacePoint& nearest, int at_most) {
+                                        double reach, const SurfacePoint& nearest, const Vec3& nearest_normal,
+                                        int at_most) {
     std::vector<SurfacePoint> candidates;
     if (at_most <= 0 || !nearest.found()) return candidates;
     const double reach2 = reach * reach;
@@ -196,15 +196,24 @@ std::vector<SurfacePoint> further_walls(const LumenSurfaceModel& model, const Lu
         model.tree, state.boxes, p, [&] { return reach2; },
         [&](Index t) {
             if (t == nearest.triangle) return;
-            Nearest n;
-            n.triangle = t;
-            n.foot = on_triangle(model, state, p, t);
-            if (n.foot.squared_distance > reach2 || n.foot.squared_distance < on_surface_mm * on_surface_mm) return;
-            const Vec3 direction = (p - n.foot.point) / std::sqrt(n.foot.squared_distance);
-            if (direction.dot(nearest.inward_normal) > wedge_cosine) return;
-            if (direction.dot(inward_triangle_normal(model, state, t)) <= 0.0) return;  // cheap: from behind
-            if (direction.dot(pseudo_normal(model, state, t, n.foot.feature)) < foot_cosine) return;
-            candidates.push_back(with_side(model, state, p, n));
+            // Most triangles of a wide vessel face as the nearest one does: sorted out before anything dear.
+            const Triangle& corner = model.triangles[at(t)];
+            const Vec3& a = state.vertices[at(corner[0])];
+            const Vec3 facing = (state.vertices[at(corner[2])] - a).cross(state.vertices[at(corner[1])] - a);
+            const double along = facing.dot(nearest_normal);
+            if (along > 0.0 && along * along > other_wall_cosine * other_wall_cosine * facing.squaredNorm()) return;
+            const TrianglePoint foot = on_triangle(model, state, p, t);
+            if (foot.squared_distance > reach2) return;
+            SurfacePoint wall;
+            wall.inward_normal = inward_smooth_normal(model, state, t, foot.barycentric);
+            if (wall.inward_normal.dot(nearest_normal) > other_wall_cosine) return;
+            const Vec3 across = foot.point - nearest.point;
+            if (across.dot(nearest_normal) <= 0.0 || across.dot(wall.inward_normal) >= 0.0) return;
+            wall.triangle = t;
+            wall.barycentric = foot.barycentric;
+            wall.point = foot.point;
+            wall.signed_distance = wall.inward_normal.dot(p - foot.point);
+            candidates.push_back(wall);
         });
     std::sort(candidates.begin(), candidates.end(), [](const SurfacePoint& a, const SurfacePoint& b) {
         return a.signed_distance < b.signed_distance ||
@@ -214,7 +223,7 @@ std::vector<SurfacePoint> further_walls(const LumenSurfaceModel& model, const Lu
     for (const SurfacePoint& c : candidates) {
         if (static_cast<int>(chosen.size()) == at_most) break;
         const bool differs = std::all_of(chosen.begin(), chosen.end(), [&](const SurfacePoint& other) {
-            return c.inward_normal.dot(other.inward_normal) <= wedge_cosine;
+            return c.inward_normal.dot(other.inward_normal) <= other_wall_cosine;
         });
         if (differs) chosen.push_back(c);
     }

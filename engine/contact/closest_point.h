@@ -39,11 +39,15 @@ SurfacePoint closest(const LumenSurfaceModel& model, const LumenSurfaceState& st
 std::optional<SurfacePoint> first_exit(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& a,
                                        const Vec3& b);
 
-/// Further walls that a sphere about p meets within `reach` besides `nearest` (wedged in a narrow vessel, in a corner):
-/// up to `at_most` points, nearest first, seen from the inside, whose directions differ by more than 60 degrees from
-/// each other's, and which are nearly foot points (the direction to p within 30 degrees of the surface's normal).  On a
-/// flat wall there is none: a point beside the foot point would hold the sphere back from sliding.
+/// Further walls that a sphere about p meets within `reach` besides `nearest`: in a narrow vessel, in a corner, in the
+/// dent that it presses itself.  Up to `at_most` points, their tangent planes nearest to p first (signed_distance and
+/// inward_normal are the plane's, with the smooth normal), whose normals differ by more than 25 degrees from
+/// nearest_normal and from each other's.  Only walls that close in on p together with the nearest one (each foot point
+/// on the inner side of the other's plane): there the lumen lies between the planes, so that a row for each holds a
+/// sample from sliding through one wall while another is pushed back, and the curvature of the wall acts within the
+/// solve and not one substep late.  A wall beyond a ridge, and a neighbouring vessel's, do not qualify.
 std::vector<SurfacePoint> further_walls(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p,
-                                        double reach, const SurfacePoint& nearest, int at_most);
+                                        double reach, const SurfacePoint& nearest, const Vec3& nearest_normal,
+                                        int at_most);
 
 }  // namespace cathlab

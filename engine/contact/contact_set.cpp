@@ -27,10 +27,41 @@ Vec3 tangential(const Vec3& v, const Vec3& normal) {
     return v - v.dot(normal) * normal;
 }
 
+/// Hands the forces of a sample's old rows on to its new ones.  Each old row goes, the strongest first, to the new row
+/// whose normal is nearest (within 60 degrees) and that no other went to, as the part of its force that points along
+/// that normal: a force handed to two rows would push twice.
+void warm_start(std::span<ChainRow> rows, std::span<const ChainRow> old_rows) {
+    std::array<bool, max_rows_per_sample> given{}, taken{};
+    for (std::size_t round = 0; round < old_rows.size(); ++round) {
+        std::size_t strongest = old_rows.size();
+        for (std::size_t o = 0; o < old_rows.size(); ++o) {
+            if (given[o] || old_rows[o].multiplier <= 0.0) continue;
+            if (strongest == old_rows.size() || old_rows[o].multiplier > old_rows[strongest].multiplier) strongest = o;
+        }
+        if (strongest == old_rows.size()) return;
+        given[strongest] = true;
+        const ChainRow& old = old_rows[strongest];
+        std::size_t nearest = rows.size();
+        double likeness = 0.5;
+        for (std::size_t r = 0; r < rows.size(); ++r) {
+            const double cosine = old.normal.dot(rows[r].normal);
+            if (taken[r] || cosine <= likeness) continue;
+            likeness = cosine;
+            nearest = r;
+        }
+        if (nearest == rows.size()) continue;
+        taken[nearest] = true;
+        ChainRow& row = rows[nearest];
+        row.multiplier = likeness < 1.0 - 1e-12 ? old.multiplier * likeness : old.multiplier;
+        row.tangent_force = into_cone(tangential(old.tangent_force, row.normal), row.friction * row.multiplier);
+    }
+}
+
 }  // namespace
 
 struct ContactSet::Found {
-    std::array<SurfacePoint, 3> wall;
+    std::array<SurfacePoint, max_rows_per_sample> wall;
+    Vec3 smooth = Vec3::Zero();  ///< normal for the nearest wall
     int count = 0;
     Index hint = -1;
 };
@@ -38,7 +69,8 @@ struct ContactSet::Found {
 ContactSet::ContactSet(const ContactSettings& settings) : settings_(settings) {
     CATHLAB_CHECK(settings.recovery_mm > 0.0 && settings.min_compliance_mm_per_mn > 0.0 && settings.match_mm >= 0.0,
                   "contact settings must be positive");
-    CATHLAB_CHECK(settings.rows_per_sample >= 1 && settings.rows_per_sample <= 3, "one to three rows a sample");
+    CATHLAB_CHECK(settings.rows_per_sample >= 1 && settings.rows_per_sample <= max_rows_per_sample,
+                  "one to five rows a sample");
     memory_.first_row.push_back(0);
 }
 
@@ -61,8 +93,10 @@ ContactSet::Found ContactSet::look(const LumenSurfaceModel& model, const LumenSu
     found.hint = nearest.triangle;
     if (!nearest.found() || nearest.signed_distance > reach || nearest.inward_normal.squaredNorm() < 0.5) return found;
     found.wall[static_cast<std::size_t>(found.count++)] = nearest;
+    found.smooth = inward_smooth_normal(model, surface, nearest.triangle, nearest.barycentric);
+    if (found.smooth.dot(nearest.inward_normal) < 0.5) found.smooth = nearest.inward_normal;
     for (const SurfacePoint& wall :
-         further_walls(model, surface, sample.position, reach, nearest, settings_.rows_per_sample - 1)) {
+         further_walls(model, surface, sample.position, reach, nearest, found.smooth, settings_.rows_per_sample - 1)) {
         found.wall[static_cast<std::size_t>(found.count++)] = wall;
     }
     return found;
@@ -175,32 +209,21 @@ void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState&
             wall.point = at_wall.point;
             ChainRow row;
             row.link = s.link;
-            row.normal = at_wall.inward_normal;
+            row.normal = k == 0 ? found[i].smooth : at_wall.inward_normal;
+            wall.offset = row.normal.dot(s.position - at_wall.point) - (at_wall.signed_distance - s.radius);
             row.friction = s.friction;
-            warm_start(row, remembered[i], old_rows, old_memory);
             rows_.push_back(row);
             wall_.push_back(wall);
+        }
+        if (remembered[i] >= 0) {
+            const auto first = at(old_memory.first_row[at(remembered[i])]);
+            const auto last = at(old_memory.first_row[at(remembered[i]) + 1]);
+            warm_start(std::span<ChainRow>(rows_).last(static_cast<std::size_t>(found[i].count)),
+                       std::span<const ChainRow>(old_rows).subspan(first, last - first));
         }
     }
     memory_.first_row.push_back(static_cast<std::int64_t>(rows_.size()));
     set_compliance(particle_compliance);
-}
-
-void ContactSet::warm_start(ChainRow& row, std::int64_t remembered, const std::vector<ChainRow>& old_rows,
-                            const Memory& old_memory) const {
-    if (remembered < 0) return;
-    const ChainRow* same = nullptr;
-    double likeness = 0.5;  // the walls of one sample stand 60 degrees apart
-    for (std::int64_t r = old_memory.first_row[at(remembered)]; r < old_memory.first_row[at(remembered) + 1]; ++r) {
-        const double cosine = old_rows[at(r)].normal.dot(row.normal);
-        if (cosine > likeness) {
-            likeness = cosine;
-            same = &old_rows[at(r)];
-        }
-    }
-    if (same == nullptr) return;
-    row.multiplier = same->multiplier;
-    row.tangent_force = into_cone(tangential(same->tangent_force, row.normal), row.friction * row.multiplier);
 }
 
 void ContactSet::set_compliance(std::span<const double> particle_compliance) {
@@ -226,7 +249,7 @@ void ContactSet::refresh(std::span<const DeviceSample> samples_now, std::span<co
         Vec3 q = Vec3::Zero();
         for (std::size_t j = wall.begin; j < wall.end; ++j) q += weight_[j] * particles_now[at(particle_[j])];
         wall.point = q;
-        row.gap = row.normal.dot(s.position - q) - wall.radius;
+        row.gap = row.normal.dot(s.position - q) - wall.offset;
         // Forces act where the surfaces meet, so friction also turns the device about its axis.
         row.arm = s.arm - wall.radius * row.normal;
         const Vec3 relative = (s.position - sample_before_[at(wall.sample)]) - (q - wall.point_before) -

@@ -1,14 +1,26 @@
 // All rows between the devices and the wall in one substep, and what they remember from the one before.
 //
-// In a substep: detect once (after predict), then in every iteration refresh, let the chain solve take
-// chain_rows(device), solve_kinematic, apply_to_wall.  A row holds sample point p, wall point q = sum w_j x_j, normal n
-// into the lumen:
-//     gap = n . (p - q) - radius                                     mm
+// In a substep: detect once (after predict), then in every iteration
+//     solve_goals; apply_to_wall and apply (the forces so far);   refresh; Rod::solve(chain_rows(device)),
+//     solve_kinematic; apply_to_wall and apply (the new forces).
+// The first apply matters: a row says how far the wall gives way to a CHANGE of force, so its gap must be measured
+// where the wall stands under the forces so far with the new goals, and not at the prediction, which knows neither.
+// Leaving it out shakes a wall that is pressed hard.
+//
+// A row holds sample point p, wall point q = sum w_j x_j, normal n into the lumen:
+//     gap = n . (p - q) - offset          mm, offset so that it is signed distance - radius at detection
 //     C   = max(sum w_j^2 c_j N_j, min_compliance)                   mm/mN, N_j = rows that touch particle j
 //     lambda' = max(0, lambda - gap / C),  |t| <= friction * lambda' mN
 // The device gets lambda n + t, particle j gets -w_j (lambda n + t): the weights sum to one and sum w_j x_j = q, so
 // force and moment about any point are handed over in full.  N_j keeps a solve that averages over rows from
 // overshooting; it changes how fast the answer is reached and not the answer, which is gap = 0 or lambda = 0.
+//
+// n is the normal of the smooth wall that the facets stand for (interpolated between corners) where that lies within 60
+// degrees of the way to the closest point, else that way: the closest point of a thin wire in its own dent jumps from
+// flank to flank of the dent, and a force that turned with it would shake the wall.  For the same reason a sample in a
+// dent, a corner or a narrow vessel gets a row for each wall that closes in on it (further_walls): with normals fixed
+// for a substep the curvature of the wall would otherwise act one substep late, and a light tip under a large force
+// would swing.
 //
 // Nothing tunnels: a sample at rest or moving at the devices' top speed (100 mm/s: 0.4 mm in a substep of 4 ms; 0.8 mm
 // with the wall coming to meet it) was within that distance of where it is found now, inside.  Rows are made for gaps
@@ -29,11 +41,13 @@
 
 namespace cathlab {
 
+inline constexpr int max_rows_per_sample = 5;
+
 struct ContactSettings {
     double recovery_mm = 4.0;                ///< a sample's centre further outside than this gets no row; > 0
     double min_compliance_mm_per_mn = 1e-4;  ///< a wall that is held rigidly counts as a spring of 10 N/mm; > 0
     double match_mm = 0.5;                   ///< samples whose arc lengths differ by less are the same one
-    int rows_per_sample = 3;                 ///< 1 to 3
+    int rows_per_sample = 5;                 ///< 1 to max_rows_per_sample
     double tip_length_mm = 10.0;             ///< what counts as the tip in the sums
 };
 
@@ -114,8 +128,6 @@ private:
 
     Found look(const LumenSurfaceModel& model, const LumenSurfaceState& surface, const DeviceSample& sample, Index hint,
                double margin) const;
-    void warm_start(ChainRow& row, std::int64_t remembered, const std::vector<ChainRow>& old_rows,
-                    const Memory& old_memory) const;
     void set_compliance(std::span<const double> particle_compliance);
 
     ContactSettings settings_;

@@ -98,7 +98,7 @@ void update(const LumenSurfaceModel& model, std::span<const Vec3> particle_posit
     CATHLAB_CHECK(particle_positions.size() >= at(model.particle_count), "the surface is bound to more particles");
     state.vertices.resize(model.vertex_count());
     evaluate_all(model.binding, particle_positions, state.vertices, workers);
-    refit(model.tree, model.triangles, state.vertices, state.boxes, workers);
+    refit(model.tree, state.vertices, state.boxes, workers);
 }
 
 Vec3 inward_triangle_normal(const LumenSurfaceModel& model, const LumenSurfaceState& state, Index triangle) {
@@ -126,6 +126,23 @@ Vec3 inward_vertex_normal(const LumenSurfaceModel& model, const LumenSurfaceStat
         }
     }
     return unit_or_zero(sum);
+}
+
+Vec3 inward_smooth_normal(const LumenSurfaceModel& model, const LumenSurfaceState& state, Index triangle,
+                          const Vec3& barycentric) {
+    Vec3 blend = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+        if (barycentric[k] == 0.0) continue;
+        const auto v = at(model.triangles[at(triangle)][k]);
+        Vec3 sum = Vec3::Zero();
+        for (Index f = model.fan_start[v]; f < model.fan_start[v + 1]; ++f) {
+            const Triangle& t = model.triangles[at(model.fan[at(f)])];
+            const Vec3& a = state.vertices[at(t[0])];
+            sum += (state.vertices[at(t[2])] - a).cross(state.vertices[at(t[1])] - a);
+        }
+        blend += barycentric[k] * unit_or_zero(sum);
+    }
+    return unit_or_zero(blend);
 }
 
 double lumen_radius(const LumenSurfaceModel& model, Index triangle, const Vec3& barycentric) {

@@ -55,6 +55,11 @@ Vec3 inward_triangle_normal(const LumenSurfaceModel& model, const LumenSurfaceSt
 Vec3 inward_edge_normal(const LumenSurfaceModel& model, const LumenSurfaceState& state, Index triangle, int edge);
 Vec3 inward_vertex_normal(const LumenSurfaceModel& model, const LumenSurfaceState& state, Index vertex);
 
+/// The normal into the lumen that a smooth wall would have at a point of a triangle: area-weighted normals of the three
+/// corners, interpolated; unit, zero where all is degenerate.
+Vec3 inward_smooth_normal(const LumenSurfaceModel& model, const LumenSurfaceState& state, Index triangle,
+                          const Vec3& barycentric);
+
 /// Radius of the lumen at a point of a triangle, mm (of the anatomy at rest).
 double lumen_radius(const LumenSurfaceModel& model, Index triangle, const Vec3& barycentric);
 

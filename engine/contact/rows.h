@@ -31,6 +31,7 @@ struct WallRow {
     bool kinematic = false;
     double radius = 0.0;               ///< of the sample, mm
     double arc_mm = 0.0;               ///< of the sample
+    double offset = 0.0;               ///< gap = n . (p - q) - offset, mm
     Vec3 barycentric = Vec3::Zero();   ///< of the wall point in its triangle
     Vec3 point = Vec3::Zero();         ///< wall point q = sum w_j x_j at the last refresh, mm, world
     Vec3 point_before = Vec3::Zero();  ///< q at the beginning of the substep

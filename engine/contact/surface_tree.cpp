@@ -6,7 +6,7 @@
 namespace cathlab {
 namespace {
 
-constexpr Index leaf_size = 4;
+constexpr Index leaf_size = 8;
 
 Vec3 centroid(const Triangle& t, std::span<const Vec3> vertices) {
     return (vertices[static_cast<std::size_t>(t[0])] + vertices[static_cast<std::size_t>(t[1])] +
@@ -57,37 +57,45 @@ SurfaceTree build_surface_tree(std::span<const Triangle> triangles, std::span<co
         tree.nodes.push_back({node.first, half});
         tree.nodes.push_back({node.first + half, node.count - half});
     }
+    for (const Index leaf : tree.leaves) {
+        tree.leaf_vertex_start.push_back(static_cast<Index>(tree.leaf_vertex.size()));
+        const SurfaceTree::Node& node = tree.nodes[static_cast<std::size_t>(leaf)];
+        const auto first = static_cast<std::ptrdiff_t>(tree.leaf_vertex.size());
+        for (Index i = node.first; i < node.first + node.count; ++i) {
+            const Triangle& t = triangles[static_cast<std::size_t>(tree.order[static_cast<std::size_t>(i)])];
+            tree.leaf_vertex.insert(tree.leaf_vertex.end(), {t[0], t[1], t[2]});
+        }
+        std::sort(tree.leaf_vertex.begin() + first, tree.leaf_vertex.end());
+        tree.leaf_vertex.erase(std::unique(tree.leaf_vertex.begin() + first, tree.leaf_vertex.end()),
+                               tree.leaf_vertex.end());
+    }
+    tree.leaf_vertex_start.push_back(static_cast<Index>(tree.leaf_vertex.size()));
     return tree;
 }
 
-void refit(const SurfaceTree& tree, std::span<const Triangle> triangles, std::span<const Vec3> vertices,
-           std::vector<SurfaceBox>& boxes, const Workers& workers) {
+void refit(const SurfaceTree& tree, std::span<const Vec3> vertices, std::vector<SurfaceBox>& boxes,
+           const Workers& workers) {
     boxes.resize(tree.nodes.size());
-    workers.for_ranges(tree.leaves.size(), 512, [&](std::size_t begin, std::size_t end) {
+    workers.for_ranges(tree.leaves.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t l = begin; l < end; ++l) {
-            const auto n = static_cast<std::size_t>(tree.leaves[l]);
-            const SurfaceTree::Node& node = tree.nodes[n];
-            const Triangle& first =
-                triangles[static_cast<std::size_t>(tree.order[static_cast<std::size_t>(node.first)])];
-            Vec3 low = vertices[static_cast<std::size_t>(first[0])];
-            Vec3 high = low;
-            for (Index i = node.first; i < node.first + node.count; ++i) {
-                const Triangle& t = triangles[static_cast<std::size_t>(tree.order[static_cast<std::size_t>(i)])];
-                for (int k = 0; k < 3; ++k) {
-                    const Vec3& v = vertices[static_cast<std::size_t>(t[k])];
-                    low = low.cwiseMin(v);
-                    high = high.cwiseMax(v);
-                }
+            const auto first = static_cast<std::size_t>(tree.leaf_vertex_start[l]);
+            const auto last = static_cast<std::size_t>(tree.leaf_vertex_start[l + 1]);
+            SurfaceBox box{vertices[static_cast<std::size_t>(tree.leaf_vertex[first])], Vec3::Zero()};
+            box.high = box.low;
+            for (std::size_t i = first + 1; i < last; ++i) {
+                box.add(vertices[static_cast<std::size_t>(tree.leaf_vertex[i])]);
             }
-            boxes[n] = {low, high};
+            boxes[static_cast<std::size_t>(tree.leaves[l])] = box;
         }
     });
     for (std::size_t n = tree.nodes.size(); n-- > 0;) {
         const SurfaceTree::Node& node = tree.nodes[n];
         if (node.count > 0) continue;
-        const SurfaceBox& left = boxes[static_cast<std::size_t>(node.first)];
         const SurfaceBox& right = boxes[static_cast<std::size_t>(node.first) + 1];
-        boxes[n] = {left.low.cwiseMin(right.low), left.high.cwiseMax(right.high)};
+        SurfaceBox box = boxes[static_cast<std::size_t>(node.first)];
+        box.add(right.low);
+        box.add(right.high);
+        boxes[n] = box;
     }
 }
 

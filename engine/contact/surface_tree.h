@@ -15,6 +15,12 @@ struct SurfaceBox {
     Vec3 low = Vec3::Zero();
     Vec3 high = Vec3::Zero();
 
+    void add(const Vec3& p) {
+        for (int a = 0; a < 3; ++a) {
+            low[a] = p[a] < low[a] ? p[a] : low[a];
+            high[a] = p[a] > high[a] ? p[a] : high[a];
+        }
+    }
     /// Squared distance from p to the box, mm2; 0 inside.
     double squared_distance(const Vec3& p) const {
         double sum = 0.0;
@@ -35,8 +41,9 @@ struct SurfaceTree {
         Index count = 0;  ///< triangles of a leaf; 0 = inner node
     };
     std::vector<Node> nodes;
-    std::vector<Index> order;   ///< triangle indices, leaf after leaf
-    std::vector<Index> leaves;  ///< nodes that are leaves, ascending
+    std::vector<Index> order;                           ///< triangle indices, leaf after leaf
+    std::vector<Index> leaves;                          ///< nodes that are leaves, ascending
+    std::vector<Index> leaf_vertex_start, leaf_vertex;  ///< vertices of leaf l, each once: [start[l], start[l + 1])
 };
 
 /// Splits at the median centroid along the longest axis; ties by triangle index, so the same mesh gives the same tree.
@@ -44,8 +51,8 @@ SurfaceTree build_surface_tree(std::span<const Triangle> triangles, std::span<co
 
 /// Boxes (one a node) around the triangles where they are now.  min and max are exact: any thread count gives the same
 /// bits.
-void refit(const SurfaceTree& tree, std::span<const Triangle> triangles, std::span<const Vec3> vertices,
-           std::vector<SurfaceBox>& boxes, const Workers& workers);
+void refit(const SurfaceTree& tree, std::span<const Vec3> vertices, std::vector<SurfaceBox>& boxes,
+           const Workers& workers);
 
 /// Calls visit(triangle) for every triangle whose leaf box is within sqrt(bound()) of p, near boxes first; bound() is
 /// asked again at every box, so visit may shrink it.

@@ -1,0 +1,214 @@
+// Contact against the true soft wall: clusters, skinned surface, and a point mass or a wire.
+#include <gtest/gtest.h>
+
+#include "ball.h"
+#include "contact/contact_set.h"
+#include "contact/device_samples.h"
+#include "contact/penetration.h"
+#include "core/deterministic_math.h"
+#include "shapes.h"
+#include "softbody/solver.h"
+#include "softbody/tube.h"
+
+namespace cathlab {
+namespace {
+
+using test::Ball;
+using test::h;
+
+struct SoftWall {
+    explicit SoftWall(double radius, double length, int threads = 1, double spacing = 2.1) : workers(threads) {
+        TubeShape shape;
+        shape.radius_mm = radius;
+        shape.length_mm = length;
+        shape.edge_mm = std::min(0.5, radius / 4.0);
+        const WallSample sample = tube_sample(shape, spacing, 1.0, 3);
+        model = build_soft_body(sample, {}, [&](const Vec3& p) { return p.z() < 4.0 || p.z() > length - 4.0; });
+        shape.edge_mm = std::min(1.4, 2.0 * 3.14159 * radius / 14.0);
+        const TriMesh lumen = tube_mesh(shape);
+        surface = build_lumen_surface(lumen, {}, {}, bind_points(model, lumen.vertices, 10, true));
+        state = rest_state(model);
+        update(surface, state.x, surface_state, workers);
+    }
+    void predict_all() {
+        predict(model, state, scratch, h, {}, {}, workers);
+        update(surface, state.x, surface_state, workers);
+    }
+    void detect(ContactSet& contacts, std::span<const DeviceSample> samples) {
+        contacts.detect(surface, surface_state, samples, 1.5, scratch.start, scratch.compliance, workers);
+    }
+    void apply_rows(const ContactSet& contacts) {
+        std::fill(scratch.force.begin(), scratch.force.end(), Vec3::Zero());
+        contacts.apply_to_wall(scratch.force);
+        apply(model, state, scratch, h, workers);
+    }
+    void finish_all() {
+        finish(model, state, scratch, h, workers);
+        update(surface, state.x, surface_state, workers);
+    }
+
+    Workers workers;
+    SoftBodyModel model;
+    SoftBodyState state;
+    SoftBodyScratch scratch;
+    LumenSurfaceModel surface;
+    LumenSurfaceState surface_state;
+};
+
+void substep(SoftWall& wall, Ball& ball, ContactSet& contacts) {
+    wall.predict_all();
+    ball.predict();
+    std::vector<DeviceSample> samples{ball.sample()};
+    wall.detect(contacts, samples);
+    for (int i = 0; i < 2; ++i) {
+        solve_goals(wall.model, wall.state, wall.scratch, wall.workers);
+        wall.apply_rows(contacts);  // where the wall stands under the forces so far: the rows' gaps are measured there
+        samples[0] = ball.sample();
+        contacts.refresh(samples, wall.state.x);
+        ball.solve(contacts.chain_rows(0));
+        wall.apply_rows(contacts);
+    }
+    samples[0] = ball.sample();
+    contacts.refresh(samples, wall.state.x);
+    wall.finish_all();
+    ball.finish();
+}
+
+TEST(SoftWall, ADeadWeightReadsItsWeight) {
+    for (const double weight : {2.0, 50.0}) {  // mN
+        SoftWall wall(9.0, 50.0);
+        ContactSet contacts;
+        Ball ball;
+        ball.radius = 1.0;
+        ball.mass = 5e-3;
+        ball.friction = 0.2;
+        ball.p = Vec3(0.1, -7.8, 25.2);
+        ball.weight = Vec3(0, -weight, 0);
+        ContactReport report;
+        for (int i = 0; i < 600; ++i) {
+            substep(wall, ball, contacts);
+            ball.v *= 0.8;
+        }
+        report = contacts.report(wall.state.x);
+        EXPECT_NEAR(report.devices.at(0).force_mn.y(), weight, 0.01 * weight);
+        EXPECT_NEAR(report.devices.at(0).normal_mn, weight, 0.01 * weight);
+        EXPECT_LT(report.penetration_mm, 0.02);
+        EXPECT_LT(report.force_imbalance, 1e-12);
+        EXPECT_LT(report.moment_imbalance, 1e-12);
+        EXPECT_LT(ball.v.norm(), 0.5);
+    }
+}
+
+TEST(SoftWall, AFastSampleIsStoppedAndTheWallGivesWay) {
+    for (const double speed : {100.0, 1000.0}) {
+        SoftWall wall(3.0, 40.0, 1, 1.8);
+        ContactSet contacts;
+        Ball ball;
+        ball.radius = 0.45;
+        ball.mass = 2e-5;
+        ball.p = Vec3(0.2, 0.1, 20.0);
+        double deepest = 0.0;
+        for (int i = 0; i < 40; ++i) {
+            ball.v = speed * Vec3(0.8, 0.6, 0.05);
+            substep(wall, ball, contacts);
+            const std::vector<DeviceSample> samples{ball.sample()};
+            const PenetrationReport report =
+                penetration_report(wall.surface, wall.surface_state, samples, wall.workers);
+            EXPECT_EQ(report.outside, 0) << speed << " substep " << i;
+            deepest = std::max(deepest, report.deepest_mm);
+        }
+        EXPECT_LT(deepest, speed > 500.0 ? 1.5 : 0.3) << speed;
+        double pushed = 0.0;
+        for (std::size_t i = 0; i < wall.state.x.size(); ++i) {
+            pushed = std::max(pushed, (wall.state.x[i] - wall.model.rest[i]).norm());
+        }
+        EXPECT_GT(pushed, 0.001);
+        EXPECT_LT(contacts.report(wall.state.x).force_imbalance, 1e-12);
+    }
+}
+
+WireSpec wire_spec() {
+    WireSpec spec;
+    spec.name = "test";
+    spec.length_mm = 400.0;
+    spec.link_length_mm = 3.0;
+    WireSection section;
+    section.length_mm = 400.0;
+    section.diameter_mm = 0.889;
+    section.bending_stiffness_n_mm2 = 1850.0;
+    section.torsion_stiffness_n_mm2 = 1400.0;
+    section.axial_stiffness_n = 37000.0;
+    section.density_kg_m3 = 7900.0;
+    section.material = "steel";
+    spec.sections = {section};
+    spec.source = "test";
+    return spec;
+}
+
+struct WireRun {
+    SoftWall wall;
+    Rod rod;
+    ContactSet contacts;
+    WireSamples samples;
+    std::vector<DeviceSample> now;
+    double deepest = 0.0, imbalance = 0.0;
+    Index outside = 0;
+
+    void substep(double advance, double turn) {
+        samples.begin(rod);
+        rod.command(advance, turn);
+        wall.predict_all();
+        rod.predict(h);
+        now.clear();
+        samples.append(rod, now);
+        wall.detect(contacts, now);
+        for (int i = 0; i < 2; ++i) {
+            solve_goals(wall.model, wall.state, wall.scratch, wall.workers);
+            wall.apply_rows(contacts);
+            now.clear();
+            samples.append(rod, now);
+            contacts.refresh(now, wall.state.x);
+            rod.solve(h, contacts.chain_rows(0));
+            wall.apply_rows(contacts);
+        }
+        wall.finish_all();
+        rod.finish(h);
+        now.clear();
+        samples.append(rod, now);
+        contacts.refresh(now, wall.state.x);
+        const PenetrationReport report = penetration_report(wall.surface, wall.surface_state, now, wall.workers);
+        deepest = std::max(deepest, report.deepest_mm);
+        outside += report.outside;
+        imbalance = std::max(imbalance, contacts.report(wall.state.x).force_imbalance);
+    }
+};
+
+WireRun wire_against_the_side(int threads) {
+    SheathPose sheath;
+    sheath.mouth.position = Vec3(0, 0, 5.0);
+    sheath.mouth.orientation = det::rotation_between(Vec3::UnitZ(), Vec3(0.25, 0.05, 1.0).normalized());
+    return {SoftWall(8.0, 120.0, threads), Rod(wire_spec(), sheath, 12.0), ContactSet(), WireSamples(0, 0.1, 1.5), {}};
+}
+
+TEST(SoftWall, AStiffWirePushedAtFullSpeedStaysInside) {
+    WireRun run = wire_against_the_side(1);
+    for (int i = 0; i < 240; ++i) run.substep(0.4, 0.025);  // 100 mm/s, 360 deg/s
+    EXPECT_EQ(run.outside, 0);
+    EXPECT_LT(run.deepest, 0.5);
+    EXPECT_LT(run.imbalance, 1e-12);
+    EXPECT_GT(run.contacts.report(run.wall.state.x).active, 3);
+}
+
+TEST(SoftWall, AWireInTheWallIsTheSameOnAnyNumberOfThreads) {
+    WireRun one = wire_against_the_side(1);
+    WireRun three = wire_against_the_side(3);
+    for (int i = 0; i < 60; ++i) {
+        one.substep(0.4, 0.01);
+        three.substep(0.4, 0.01);
+    }
+    for (std::size_t i = 0; i < one.wall.state.x.size(); ++i) ASSERT_EQ(one.wall.state.x[i], three.wall.state.x[i]);
+    ASSERT_EQ(one.rod.tip(), three.rod.tip());
+}
+
+}  // namespace
+}  // namespace cathlab
