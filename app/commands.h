@@ -1,0 +1,21 @@
+// The subcommands.  Each add_* declares its options on the command line and what runs when it is chosen.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "context.h"
+
+namespace CLI {
+class App;
+}
+
+namespace cathlab {
+
+void add_run_command(CLI::App& app, AppContext& context);
+void add_replay_command(CLI::App& app, AppContext& context);
+void add_list_command(CLI::App& app, AppContext& context);
+void add_check_command(CLI::App& app, AppContext& context);
+void add_bench_command(CLI::App& app, AppContext& context);
+
+}  // namespace cathlab

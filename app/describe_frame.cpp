@@ -1,0 +1,164 @@
+#include "describe_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "beam/exposure.h"
+#include "contrast/transport.h"
+#include "core/units.h"
+#include "step/parts.h"
+
+namespace cathlab {
+namespace {
+
+void describe_solids(const AnatomyModel& anatomy, FrameDescription& frame) {
+    if (frame.solids_revision != 0) return;
+    frame.solids_revision = 1;
+    for (const ContextSolid& solid : anatomy.context) {
+        FrameSolid out;
+        out.material = solid.material;
+        out.surrounding = "air";
+        for (const ContextSolid& outer : anatomy.context)
+            if (outer.name == solid.inside) out.surrounding = outer.material;
+        out.mesh = solid.mesh;
+        frame.solids.push_back(std::move(out));
+    }
+}
+
+void describe_contrast(const World& world, const AnatomyModel& anatomy, FrameLumen& lumen) {
+    const auto* contrast = world.first<ContrastState>();
+    if (contrast == nullptr) return;
+    const auto& concentration = contrast->concentration;
+    if (std::all_of(concentration.begin(), concentration.end(), [](double c) { return c <= 0.0; })) {
+        lumen.contrast_mg_ml.clear();
+        return;
+    }
+    lumen.contrast_mg_ml.resize(anatomy.lumen.vertices.size());
+    world.workers().for_ranges(anatomy.lumen.vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            lumen.contrast_mg_ml[i] =
+                concentration[static_cast<std::size_t>(anatomy.centreline.nearest(anatomy.lumen.vertices[i]))];
+    });
+}
+
+void describe_lumen(const Parts& parts, FrameLumen& lumen) {
+    lumen.vertices = parts.surface_state->vertices;
+    if (lumen.topology_revision == 0) {
+        lumen.topology_revision = 1;
+        lumen.triangles = parts.surface->triangles;
+    }
+    const auto& rest = parts.anatomy->lumen.vertices;
+    lumen.displacement_mm.resize(rest.size());
+    for (std::size_t i = 0; i < rest.size(); ++i)
+        lumen.displacement_mm[i] = std::sqrt((lumen.vertices[i] - rest[i]).squaredNorm());
+    // A triangle's contact force colours its three corners.
+    std::vector<Vec3> force_mn(lumen.triangles.size(), Vec3::Zero());
+    parts.contacts->add_triangle_forces(force_mn);
+    lumen.wall_force_n.assign(rest.size(), 0.0);
+    for (std::size_t t = 0; t < force_mn.size(); ++t) {
+        if (force_mn[t].isZero()) continue;
+        const double newtons = std::sqrt(force_mn[t].squaredNorm()) / units::newton;
+        for (const Index corner : lumen.triangles[t]) lumen.wall_force_n[static_cast<std::size_t>(corner)] += newtons;
+    }
+    describe_contrast(*parts.world, *parts.anatomy, lumen);
+}
+
+std::uint8_t material_index(FrameDevice& device, const std::string& name) {
+    const auto it = std::find(device.materials.begin(), device.materials.end(), name);
+    const auto index = static_cast<std::uint8_t>(it - device.materials.begin());
+    if (it == device.materials.end()) device.materials.push_back(name);
+    return index;
+}
+
+FrameDevice describe_wire(const Rod& wire) {
+    FrameDevice out;
+    out.name = wire_entity;
+    out.points = wire.polyline();
+    for (std::size_t i = 0; i + 1 < out.points.size(); ++i) {
+        out.radius_mm.push_back(wire.link_radius(i));
+        out.material_of.push_back(material_index(out, wire.material(i)));
+    }
+    return out;
+}
+
+FrameDevice describe_catheter(const CatheterSpec& spec, const CatheterShape& shape) {
+    FrameDevice out;
+    out.name = catheter_entity;
+    out.points = shape.points;
+    out.color = Vec3(0.25, 0.45, 0.75);
+    const double band = shape.arc.back() - spec.tip_marker_length_mm;
+    for (std::size_t i = 0; i + 1 < out.points.size(); ++i) {
+        out.radius_mm.push_back(spec.radius_mm());
+        out.inner_radius_mm.push_back(0.5 * spec.inner_diameter_mm);
+        const bool marker = 0.5 * (shape.arc[i] + shape.arc[i + 1]) >= band;
+        out.material_of.push_back(material_index(out, marker ? spec.tip_material : spec.material));
+    }
+    return out;
+}
+
+// The camera keeps its roll: the old right-hand axis, made square to the new direction.
+Pose camera_pose(const Vec3& position, const Vec3& forward, const std::optional<FrameCamera>& before) {
+    Vec3 right = before ? Vec3(before->pose.orientation * Vec3::UnitX()) : Vec3::UnitX();
+    right -= forward * forward.dot(right);
+    if (right.squaredNorm() < 1e-6) right = forward.cross(std::fabs(forward.x()) < 0.8 ? Vec3::UnitX() : Vec3::UnitY());
+    right.normalize();
+    Mat3 axes;
+    axes << right, forward.cross(right), forward;
+    return {position, Quat(axes)};
+}
+
+// From the tip of whichever device has gone further.
+void describe_camera(const Parts& parts, FrameDescription& frame) {
+    const double wire_mm = parts.wire ? parts.wire->insertion_mm() : -1.0;
+    const double catheter_mm = parts.catheter ? parts.catheter_state->insertion_mm : -1.0;
+    std::optional<FrameCamera> camera;
+    if (parts.catheter && catheter_mm >= wire_mm) {
+        const Pose& tip = parts.catheter_route->shape.tip;
+        camera.emplace();
+        camera->pose = camera_pose(tip.position, tip.orientation * Vec3::UnitZ(), frame.inner_camera);
+    } else if (parts.wire) {
+        const std::vector<Vec3> points = parts.wire->polyline();
+        camera.emplace();
+        camera->pose = camera_pose(points[0], (points[0] - points[1]).normalized(), frame.inner_camera);
+    }
+    frame.inner_camera = camera;
+}
+
+void describe_beam(const World& world, const SceneSpec& scene, const Channels& channels, FrameDescription& frame) {
+    BeamSpec fallback;
+    fallback.c_arm.sid_mm = scene.c_arm.sid_mm;
+    fallback.c_arm.sod_mm = scene.c_arm.sod_mm;
+    fallback.c_arm.field_mm = scene.c_arm.field_of_view_mm;
+    fallback.isocentre = scene.c_arm.isocentre.point;
+    const auto* in_world = world.first<BeamSpec>();
+    const BeamSpec& beam = in_world != nullptr ? *in_world : fallback;
+    const CArmPose pose =
+        c_arm_pose(beam.c_arm, beam.isocentre, channels.primary_angle_deg, channels.secondary_angle_deg);
+    frame.view.source = pose.source;
+    frame.view.detector_center = pose.detector;
+    frame.view.right = pose.right;
+    frame.view.down = pose.down;
+    frame.view.width_mm = beam.c_arm.field_mm;
+    frame.view.height_mm = beam.c_arm.field_mm;
+    frame.exposure.copper_mm = beam.copper_mm;
+    if (channels.tube_voltage_kvp > 0.0) frame.exposure.kvp = channels.tube_voltage_kvp;
+    if (channels.detector_kerma_ngy > 0.0) frame.exposure.detector_kerma_ngy = channels.detector_kerma_ngy;
+    frame.beam_on = channels.beam_on > 0.5;
+}
+
+}  // namespace
+
+void describe_frame(World& world, const SceneSpec& scene, const Channels& channels, FrameDescription& frame) {
+    const Parts parts = find_parts(world);
+    describe_solids(*parts.anatomy, frame);
+    describe_lumen(parts, frame.lumen);
+    frame.devices.clear();
+    if (parts.catheter) frame.devices.push_back(describe_catheter(*parts.catheter, parts.catheter_route->shape));
+    if (parts.wire) frame.devices.push_back(describe_wire(*parts.wire));
+    describe_camera(parts, frame);
+    frame.show_inner_view = frame.inner_camera.has_value();
+    describe_beam(world, scene, channels, frame);
+    frame.wall_force_limit_n = channels.force_limit_n > 0.0 ? channels.force_limit_n : 0.8;
+}
+
+}  // namespace cathlab

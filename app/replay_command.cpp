@@ -1,0 +1,137 @@
+// cathlab replay: a run again from step 0 with its recorded inputs, compared with what was recorded.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "commands.h"
+#include "core/log.h"
+#include "film.h"
+#include "progress.h"
+#include "record/run_reader.h"
+#include "run_options.h"
+#include "scene/load_scene.h"
+#include "session.h"
+
+namespace cathlab {
+namespace {
+
+struct ReplayOptions {
+    std::string folder;
+    bool verify = false;
+    int threads = default_threads();
+    FilmArguments film;
+};
+
+SceneSpec recorded_scene(const RunRecord& run, const AppContext& context) {
+    std::vector<std::string> overlays;
+    for (const std::string& overlay : run.manifest.overlays) overlays.push_back(find_scene(overlay, context.data_root));
+    const SceneSpec scene = load_scene(find_scene(run.manifest.scene, context.data_root), overlays, context.data_root);
+    if (scene.hash != run.manifest.scene_hash)
+        throw UserError(run.folder + ": the scene " + scene.path +
+                        ", its overlays or the files that it names have changed since this run was recorded");
+    if (run.manifest.version != CATHLAB_VERSION)
+        log::warn("recorded by version " + run.manifest.version + ", this is " CATHLAB_VERSION);
+    return scene;
+}
+
+// Compares step by step: the trace has every channel of every step, the hashes all of the state every 50 steps.
+class Verifier {
+public:
+    explicit Verifier(const RunRecord& run) : run_(run), trace_(read_trace(run.folder, run.manifest.complete)) {
+        if (run.manifest.complete && static_cast<std::int64_t>(trace_.size()) != run.steps)
+            throw UserError(run.folder + "/trace.csv: has " + std::to_string(trace_.size()) + " steps, the run " +
+                            std::to_string(run.steps) + " (truncated or edited?)");
+    }
+    /// Before the step of this index (steps = steps done).  False if the state differs; then difference() says where.
+    bool state(std::int64_t steps, World& world) {
+        if (next_ >= run_.hashes.size() || run_.hashes[next_].steps != steps) return true;
+        const std::string entity = first_difference(run_.hashes[next_].hash, world.state_hash());
+        ++next_;
+        ++compared_;
+        if (entity.empty()) return true;
+        difference_ =
+            "the state differs after step " + std::to_string(steps) + ", first in the entity '" + entity + "'";
+        if (channel_step_ >= 0)
+            difference_ +=
+                "; the first channel that differs is " + channel_ + " in step " + std::to_string(channel_step_);
+        return false;
+    }
+    /// After the step of this index.
+    void channels(std::int64_t step, const Channels& now) {
+        if (channel_step_ >= 0 || step >= static_cast<std::int64_t>(trace_.size())) return;
+        if (const ChannelInfo* channel = first_difference(trace_[static_cast<std::size_t>(step)], now)) {
+            channel_ = std::string(channel->name);
+            channel_step_ = step;
+        }
+    }
+    bool channels_agree() const { return channel_step_ < 0; }
+    std::string channel_difference() const {
+        return "the state agrees but the channel " + channel_ + " differs in step " + std::to_string(channel_step_) +
+               " (trace.csv edited?)";
+    }
+    const std::string& difference() const { return difference_; }
+    std::size_t compared() const { return compared_; }
+
+private:
+    const RunRecord& run_;
+    std::vector<Channels> trace_;
+    std::size_t next_ = 0, compared_ = 0;
+    std::int64_t channel_step_ = -1;
+    std::string channel_, difference_;
+};
+
+void replay(const ReplayOptions& options, AppContext& context) {
+    const RunRecord run = read_run(options.folder);
+    const SceneSpec scene = recorded_scene(run, context);
+    std::optional<Verifier> verifier;
+    if (options.verify) verifier.emplace(run);
+    Session session(scene, run.manifest.seed, options.threads, context);
+    if (session.anatomy_hash() != run.manifest.anatomy_hash)
+        throw UserError(options.folder + ": the anatomy is built otherwise than when this run was recorded");
+    std::unique_ptr<Film> film;
+    if (!options.film.video.empty() && options.film.video != "none")
+        film = std::make_unique<Film>(scene, film_options(options.film, scene, options.film.video), options.threads);
+    catch_stop_signals();
+    Progress progress("replaying");
+    std::int64_t k = 0;
+    bool agrees = true;
+    for (; k < run.steps && agrees && !stop_wanted(); ++k) {
+        agrees = !verifier || verifier->state(k, session.world());
+        if (!agrees) break;
+        session.step(run.input_at(k));
+        if (verifier) verifier->channels(k, session.channels());
+        if (film) {
+            for (const Event& event : session.events()) film->message(event);
+            while (film->due(session.channels().time_s)) film->add(session.world(), session.channels());
+        }
+        progress.update(static_cast<double>(k + 1) / static_cast<double>(run.steps));
+    }
+    progress.end();
+    if (film) film->close();
+    if (agrees && verifier) agrees = verifier->state(k, session.world());
+    if (!agrees) throw UserError(options.folder + ": " + verifier->difference());
+    if (k < run.steps) throw UserError("stopped after step " + std::to_string(k) + " of " + std::to_string(run.steps));
+    if (verifier && !verifier->channels_agree())
+        throw UserError(options.folder + ": " + verifier->channel_difference());
+    std::printf("%s: %lld steps replayed", options.folder.c_str(), static_cast<long long>(k));
+    if (verifier) std::printf(", %zu state hashes and every channel agree", verifier->compared());
+    std::printf("\n");
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, AppContext& context) {
+    const auto options = std::make_shared<ReplayOptions>();
+    CLI::App* command = app.add_subcommand("replay", "Do a recorded run again from step 0");
+    command->add_option("DIR", options->folder, "a run folder")->required();
+    command->add_flag("--verify", options->verify, "compare every recorded state hash and channel");
+    command->add_option("--video", options->film.video, "film it: .mp4 or .avi (lossless)");
+    command->add_option("--size", options->film.size, "of the film, WxH; else the scene's");
+    command->add_option("--fps", options->film.fps, "pictures a second of simulated time; else the scene's")
+        ->check(CLI::Range(1.0, 120.0));
+    command->add_option("--threads", options->threads, "for the step and the pictures")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    command->callback([options, &context] { replay(*options, context); });
+}
+
+}  // namespace cathlab

@@ -1,0 +1,232 @@
+// cathlab run: a scene and a script -> a run folder.
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "commands.h"
+#include "core/log.h"
+#include "film.h"
+#include "progress.h"
+#include "record/run_writer.h"
+#include "run_options.h"
+#include "scene/load_scene.h"
+#include "scene/script.h"
+#include "session.h"
+#include "task/metrics.h"
+
+namespace cathlab {
+namespace {
+
+struct RunOptions {
+    std::string scene, out, script;
+    std::vector<std::string> overlays;
+    double seconds = 0.0;
+    std::optional<std::uint64_t> seed;
+    int threads = default_threads();
+    FilmArguments film;
+    bool force = false;
+};
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+std::string utc_now() {
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    std::tm parts{};
+    ::gmtime_r(&now, &parts);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return text;
+}
+
+std::string host_text() {
+    utsname names{};
+    if (::uname(&names) != 0) return "unknown";
+    return std::string(names.nodename) + " " + names.machine + ", " + std::to_string(::sysconf(_SC_NPROCESSORS_ONLN)) +
+           " processors";
+}
+
+std::string metrics_json(const Metrics& metrics) {
+    nlohmann::ordered_json out;
+    for (const MetricInfo& metric : metric_table()) out[std::string(metric.name)] = metrics.*metric.value;
+    return out.dump(2) + "\n";
+}
+
+// The run itself: everything that must be closed in order when it ends, however it ends.
+class Recording {
+public:
+    Recording(const RunOptions& options, Session& session, const Script& script, const AppContext& context)
+        : session_(session),
+          script_(script),
+          folder_(options.out),
+          steps_(step_count(options, session)),
+          writer_(open_folder(options, session, context), manifest(options, session, context), session.entity_names()) {
+        if (options.film.video == "none") return;
+        video_ = options.film.video.empty() ? folder_ + "/fluoro.mp4" : options.film.video;
+        film_ = std::make_unique<Film>(session.scene(), film_options(options.film, session.scene(), video_),
+                                       options.threads);
+    }
+
+    /// True if the run reached its end, false if it was stopped.  After an exception the folder is closed too.
+    bool run() {
+        try {
+            loop();
+        } catch (...) {
+            try {
+                finish(false);
+            } catch (const std::exception& second) {
+                log::error(std::string("closing the run folder: ") + second.what());
+            }
+            throw;
+        }
+        finish(done_ == steps_);
+        return done_ == steps_;
+    }
+    double simulated_s() const { return static_cast<double>(done_) * session_.dt(); }
+    double wall_s() const { return wall_s_; }
+    const std::string& video() const { return video_; }
+
+private:
+    static std::int64_t step_count(const RunOptions& options, const Session& session) {
+        const double seconds = options.seconds > 0.0 ? options.seconds : session.scene().duration_s;
+        return std::max<std::int64_t>(1, std::llround(seconds / session.dt()));
+    }
+    static std::string open_folder(const RunOptions& options, const Session&, const AppContext&) {
+        prepare_run_folder(options.out, options.force);
+        return options.out;
+    }
+    static RunManifest manifest(const RunOptions& options, Session& session, const AppContext& context) {
+        RunManifest m;
+        m.version = CATHLAB_VERSION;
+        m.scene = path_for_manifest(session.scene().path, context.data_root);
+        for (const std::string& overlay : options.overlays)
+            m.overlays.push_back(path_for_manifest(overlay, context.data_root));
+        m.scene_name = session.scene().name;
+        m.scene_hash = session.scene().hash;
+        m.anatomy_hash = session.anatomy_hash();
+        if (!options.script.empty()) m.script = path_for_manifest(options.script, context.data_root);
+        m.seed = session.world().seed();
+        m.dt_s = session.dt();
+        m.threads = options.threads;
+        m.host = host_text();
+        m.started_utc = utc_now();
+        return m;
+    }
+
+    void loop() {
+        begin_ = Clock::now();
+        Progress progress("running");
+        const Input base = session_.base_input();
+        for (; done_ < steps_ && !stop_wanted(); ++done_) {
+            if (RunWriter::wants_hash(done_)) writer_.hash(done_, session_.world().state_hash());
+            const Input input = script_.at(static_cast<double>(done_) * session_.dt(), base);
+            writer_.input(done_, input);
+            session_.step(input);
+            writer_.step(done_, session_.channels(), session_.events());
+            metrics_.add(session_.channels(), session_.dt());
+            if (film_) draw();
+            char detail[64];
+            std::snprintf(detail, sizeof detail, "%.1f of %.1f s", simulated_s(),
+                          static_cast<double>(steps_) * session_.dt());
+            progress.update(static_cast<double>(done_ + 1) / static_cast<double>(steps_), detail);
+        }
+    }
+    void draw() {
+        for (const Event& event : session_.events()) film_->message(event);
+        while (film_->due(session_.channels().time_s)) film_->add(session_.world(), session_.channels());
+        // The poster comes from the later part of a run, where the devices have arrived.
+        if (done_ * 4 == steps_ * 3) poster_ = film_->last();
+    }
+    void finish(bool complete) {
+        if (finished_) return;
+        finished_ = true;
+        wall_s_ = seconds_since(begin_);
+        if (done_ > 0) writer_.hash(done_, session_.world().state_hash());
+        if (!metrics_.empty()) writer_.file("metrics.json", metrics_json(metrics_.result()));
+        if (film_ && film_->frames() > 0) {
+            write_png(folder_ + "/poster.png", poster_.rgb.empty() ? film_->last() : poster_);
+            film_->close();
+        } else {
+            video_.clear();
+        }
+        const std::filesystem::path video(video_);
+        const bool inside = video.parent_path() == std::filesystem::path(folder_);
+        writer_.finish(done_, complete, wall_s_, inside ? video.filename().string() : video_);
+    }
+
+    Session& session_;
+    const Script& script_;
+    std::string folder_;
+    std::int64_t steps_ = 0;
+    std::int64_t done_ = 0;
+    RunWriter writer_;
+    std::string video_;
+    std::unique_ptr<Film> film_;
+    MetricsAccumulator metrics_;
+    Image8 poster_;
+    Clock::time_point begin_ = Clock::now();
+    double wall_s_ = 0.0;
+    bool finished_ = false;
+};
+
+void run(RunOptions options, AppContext& context) {
+    const SceneSpec scene =
+        load_scene(find_scene(options.scene, context.data_root), options.overlays, context.data_root);
+    if (options.script.empty()) options.script = scene.script;
+    const Script script = options.script.empty() ? Script() : Script::load(options.script);
+    film_options(options.film, scene, "");  // a wrong size is told before the world is built
+    check_run_folder(options.out, options.force);
+    Session session(scene, options.seed.value_or(scene.seed), options.threads, context);
+    catch_stop_signals();
+    Recording recording(options, session, script, context);
+    const bool complete = recording.run();
+    const double simulated = recording.simulated_s();
+    std::printf("%s: %.2f s simulated in %.2f s (%.2f x real time)%s%s\n", options.out.c_str(), simulated,
+                recording.wall_s(), simulated / std::max(1e-9, recording.wall_s()),
+                recording.video().empty() ? "" : ", film ", recording.video().c_str());
+    if (!complete) {
+        context.exit_code = 1;
+        std::fprintf(stderr, "cathlab: stopped after %.2f s; %s is closed and marked incomplete\n", simulated,
+                     options.out.c_str());
+    }
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, AppContext& context) {
+    const auto options = std::make_shared<RunOptions>();
+    CLI::App* command = app.add_subcommand("run", "Run a scene and write a run folder");
+    command->add_option("SCENE", options->scene, "a scene file, or the name of one in scenes/")->required();
+    command->add_option("--out", options->out, "the run folder: new, empty, or with --force an earlier run's")
+        ->required();
+    command->add_option("--script", options->script, "what the operator does: CSV t_s,action,value; else the scene's");
+    command->add_option("--seconds", options->seconds, "simulated time; else the scene's duration_s")
+        ->check(CLI::Range(0.001, 86400.0));
+    command->add_option("--seed", options->seed, "of every random number; else the scene's")
+        ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{9007199254740991}));
+    command->add_option("--threads", options->threads, "for the step and the pictures")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    command->add_option("--video", options->film.video,
+                        "the film: .mp4, .avi (lossless), or none; else fluoro.mp4 in the folder");
+    command->add_option("--size", options->film.size, "of the film, WxH; else the scene's");
+    command->add_option("--fps", options->film.fps, "pictures a second of simulated time; else the scene's")
+        ->check(CLI::Range(1.0, 120.0));
+    command->add_option("--overlay", options->overlays, "a file laid over the scene; may be given again")
+        ->allow_extra_args(false);
+    command->add_flag("--force", options->force, "replace an earlier run in the folder");
+    command->callback([options, &context] { run(*options, context); });
+}
+
+}  // namespace cathlab

@@ -1,0 +1,32 @@
+#include "run_options.h"
+
+#include <charconv>
+
+#include "core/errors.h"
+
+namespace cathlab {
+namespace {
+
+bool parse_int(std::string_view text, int& out) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+}  // namespace
+
+FilmOptions film_options(const FilmArguments& arguments, const SceneSpec& scene, const std::string& path) {
+    FilmOptions out{path, scene.video.width, scene.video.height, scene.video.fps};
+    if (!arguments.size.empty()) {
+        const std::string_view size(arguments.size);
+        const auto cross = size.find('x');
+        const bool parsed = cross != std::string_view::npos && parse_int(size.substr(0, cross), out.width) &&
+                            parse_int(size.substr(cross + 1), out.height);
+        if (!parsed || out.width < 64 || out.height < 64 || out.width > 7680 || out.height > 4320 ||
+            out.width % 2 != 0 || out.height % 2 != 0)
+            throw UserError("--size '" + arguments.size + "': two even numbers are wanted, 64x64 to 7680x4320", true);
+    }
+    if (arguments.fps > 0.0) out.fps = arguments.fps;
+    return out;
+}
+
+}  // namespace cathlab

@@ -1,0 +1,49 @@
+#include "session.h"
+
+#include <algorithm>
+#include <thread>
+
+#include "progress.h"
+#include "scene/build_world.h"
+#include "step/step.h"
+#include "world/step_settings.h"
+
+namespace cathlab {
+
+Session::Session(const SceneSpec& scene, std::uint64_t seed, int threads, const AppContext& context) : scene_(scene) {
+    Progress progress("building");
+    BuildOptions options;
+    options.threads = threads;
+    options.cache_folder = context.cache_folder;
+    options.progress = [&](double fraction, std::string_view what) { progress.update(fraction, what); };
+    const auto models = build_models(scene_, options);
+    world_ = build_world(scene_, *models, seed, threads);
+    anatomy_hash_ = cathlab::anatomy_hash(*models);
+    prepare(*world_);
+}
+
+void Session::step(const Input& input) {
+    cathlab::step(*world_, input, channels_);
+    EventLog& log = *world_->first<EventLog>();
+    events_ = std::move(log.pending);
+    log.pending.clear();
+}
+
+Input Session::base_input() const {
+    Input input;
+    input.primary_angle = scene_.c_arm.primary_deg;
+    input.secondary_angle = scene_.c_arm.secondary_deg;
+    return input;
+}
+
+std::vector<std::string> Session::entity_names() {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < world_->entity_count(); ++i) names.push_back(world_->name(static_cast<Entity>(i)));
+    return names;
+}
+
+int default_threads() {
+    return std::clamp(static_cast<int>(std::thread::hardware_concurrency()) - 1, 1, 4);
+}
+
+}  // namespace cathlab
