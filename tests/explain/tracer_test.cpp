@@ -1,0 +1,145 @@
+// Recordings made here by formulas of their own: a beat, breathing, a vibration, noise.
+#include "explain/tracer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "core/errors.h"
+#include "core/random.h"
+#include "explain/base_model.h"
+#include "explain/folder.h"
+
+using namespace cathlab;
+using explain_test::Folder;
+using explain_test::heart_toml;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+double beat(double phase) {
+    return 4.0 * std::cos(2.0 * pi * phase) + 1.5 * std::sin(4.0 * pi * phase) - 0.7 * std::cos(6.0 * pi * phase);
+}
+
+/// Two runs of 40 s at 20 Hz with beats of 0.83 s; `more` adds to the displacement.
+Folder heart(std::uint64_t seed, double noise, const std::function<double(double)>& more) {
+    std::ostringstream csv, beats;
+    csv.precision(9);
+    csv << "run,t_s,displacement_mm\n";
+    beats << "[";
+    for (int run = 0; run < 2; ++run) {
+        beats << (run > 0 ? ", [" : "[");
+        for (int b = 0; b < 50; ++b) beats << (b > 0 ? ", " : "") << 0.83 * b;
+        beats << "]";
+        for (int i = 0; i < 800; ++i) {
+            const double t = 0.05 * i;
+            const double phase = t / 0.83 - std::floor(t / 0.83);
+            const double error = noise * random_normal(seed, RandomStream::test, static_cast<std::uint64_t>(run),
+                                                       static_cast<std::uint64_t>(i));
+            csv << run << "," << t << "," << 10.0 * run + beat(phase) + more(t) + error << "\n";
+        }
+    }
+    beats << "]";
+    return Folder(heart_toml(beats.str(), std::to_string(noise)), csv.str());
+}
+
+}  // namespace
+
+TEST(BeatPhase, RunsFromBeatToBeat) {
+    const std::vector<double> beats{1.0, 2.0, 4.0};
+    EXPECT_DOUBLE_EQ(beat_phase(beats, 1.25), 0.25);
+    EXPECT_DOUBLE_EQ(beat_phase(beats, 3.0), 0.5);
+    EXPECT_TRUE(std::isnan(beat_phase(beats, 0.5)));
+    EXPECT_TRUE(std::isnan(beat_phase(beats, 4.5)));
+}
+
+TEST(Explain, FindsNothingWhereOnlyTheHeartBeats) {
+    for (const std::uint64_t seed : {1ULL, 2ULL, 3ULL}) {
+        const Folder folder = heart(seed, 0.15, [](double) { return 0.0; });
+        const Explanation found = explain(read_dataset(folder.path()));
+        EXPECT_EQ(found.verdict, Verdict::nothing_missing) << seed;
+        EXPECT_TRUE(found.effects.empty());
+        EXPECT_TRUE(found.overlay.empty());
+        EXPECT_NEAR(found.held_out_before, 0.15, 0.02);
+    }
+}
+
+TEST(Explain, NamesTheBreathingThatNobodyDeclared) {
+    for (const double amplitude : {1.0, 4.0}) {
+        const double period = 3.7;
+        const Folder folder = heart(5, 0.15, [&](double t) {
+            const double s = std::sin(pi * (t / period + 0.2));
+            return -amplitude * s * s * s * s;
+        });
+        ExplainOptions options;
+        options.threads = 3;
+        const Explanation found = explain(read_dataset(folder.path()), options);
+        ASSERT_EQ(found.effects.size(), 1U) << amplitude;
+        EXPECT_EQ(found.effects[0].name, "respiration");
+        EXPECT_EQ(found.verdict, Verdict::explained);
+        EXPECT_LE(found.held_out_after, 1.15 * 0.15);
+        EXPECT_GT(found.held_out_before, 0.3);
+        for (const auto& [key, value] : found.effects[0].parameters) {
+            if (key != "period_s") continue;
+            EXPECT_NEAR(value, period, 0.02);
+        }
+        EXPECT_NE(found.overlay.find("[effects.respiration]\nenabled = true\n"), std::string::npos);
+    }
+}
+
+TEST(Explain, GivesTheSameAnswerOnAnyNumberOfThreads) {
+    const Folder folder = heart(6, 0.2, [](double t) { return 2.0 * std::pow(std::sin(pi * t / 5.1), 4); });
+    const Dataset data = read_dataset(folder.path());
+    ExplainOptions options;
+    options.max_effects = 1;
+    const Explanation one = explain(data, options);
+    options.threads = 3;
+    EXPECT_EQ(explain(data, options).overlay, one.overlay);
+}
+
+TEST(Explain, LeavesAVibrationUnexplainedButDescribesIt) {
+    const Folder folder = heart(7, 0.15, [](double t) { return 0.8 * std::sin(2.0 * pi * t / 0.31); });
+    const Explanation found = explain(read_dataset(folder.path()));
+    EXPECT_EQ(found.verdict, Verdict::unexplained);
+    ASSERT_FALSE(found.left_over.empty());
+    EXPECT_EQ(found.left_over[0].what, "oscillation");
+    EXPECT_NEAR(found.left_over[0].period_s, 0.31, 0.002);
+    EXPECT_NEAR(found.left_over[0].amplitude, 0.8, 0.08);
+}
+
+TEST(Explain, FitsTheModulusOfAStraightLine) {
+    std::ostringstream csv;
+    csv << "run,t_s,stress_mpa,strain\n";
+    for (int i = 0; i < 200; ++i)
+        csv << 0 << "," << i << "," << 0.001 * i << ","
+            << i / 450.0 + 1e-3 * random_normal(1, RandomStream::test, 9, static_cast<std::uint64_t>(i)) << "\n";
+    const Folder folder(
+        "format = 1\nkind = \"wall-tension\"\ntitle = \"t\"\nsource = \"s\"\nlicense = \"l\"\ndeclared_effects = []\n"
+        "sensor_noise = 0.001\n[setup]\nspecimen = \"strip\"\nthickness_mm = 1.0\nmode = \"tension\"\n",
+        csv.str());
+    const Explanation found = explain(read_dataset(folder.path()));
+    ASSERT_EQ(found.base_parameters.size(), 1U);
+    EXPECT_EQ(found.base_parameters[0].first, "modulus_kpa");
+    EXPECT_NEAR(found.base_parameters[0].second, 450.0, 1.0);
+    EXPECT_EQ(found.verdict, Verdict::nothing_missing);
+}
+
+TEST(Explain, SaysWhatItCannotYetDo) {
+    std::string csv =
+        "run,t_s,insertion_mm,rotation_deg,proximal_bend_deg,distal_bend_deg,tip_x_mm,tip_y_mm,tip_z_mm\n";
+    for (int i = 0; i < 20; ++i) csv += "0," + std::to_string(i) + ",1,2,3,4,5,6,7\n";
+    const Folder folder(
+        "format = 1\nkind = \"catheter-tip\"\ntitle = \"t\"\nsource = \"s\"\nlicense = \"l\"\ndeclared_effects = []\n"
+        "sensor_noise = 0.1\n[setup]\n",
+        csv);
+    const Dataset data = read_dataset(folder.path());
+    try {
+        explain(data);
+        FAIL();
+    } catch (const UserError& e) {
+        EXPECT_NE(std::string(e.what()).find("cannot yet be its rig"), std::string::npos);
+    }
+}
