@@ -27,6 +27,7 @@ struct HeartSpec {
     double rest_gap_mm = 0.0;      ///< the face stands this far below the annulus at rest, >= 0
     Vec3 tilt_rad = Vec3::Zero();  ///< rotation vector of the axis against the annulus' frame
     double initial_phase = 0.45;
+    bool bonded = true;  ///< the annulus hangs on the cylinder, which then moves it both ways; false: it pushes only
     std::vector<HeartKnot> knots = default_knots(11.6);
     std::string source = "plonek2018, weissler1968";
 

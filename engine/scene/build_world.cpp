@@ -4,9 +4,12 @@
 #include <cmath>
 
 #include "anatomy/build.h"
+#include "beam/exposure.h"
+#include "beam/thickness.h"
 #include "catheter/motion.h"
 #include "catheter/mount.h"
 #include "contact/lumen_surface.h"
+#include "contrast/transport.h"
 #include "core/units.h"
 #include "heart/motion.h"
 #include "rod/rod.h"
@@ -23,6 +26,8 @@ struct SceneModels {
     Shared<AnatomyModel> anatomy;
     Shared<SoftBodyModel> wall;
     Shared<LumenSurfaceModel> surface;
+    Shared<BodyThickness> thickness;
+    Shared<ContrastModel> contrast;
 };
 
 namespace {
@@ -157,6 +162,71 @@ void add_catheter(World& world, const SceneSpec& spec, const AnatomyModel& anato
     world.add(e, std::move(catheter));
 }
 
+// Where the heart's output enters the tree: the annulus, or the widest end of an imported mesh.
+Index flow_root(const AnatomyModel& anatomy) {
+    const CentrelineGraph& graph = anatomy.centreline;
+    if (anatomy.annulus) return graph.nearest(anatomy.annulus->pose.position);
+    const auto neighbours = graph.adjacency();
+    Index widest = 0;
+    double radius = 0.0;
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i)
+        if (neighbours[i].size() == 1 && graph.nodes[i].radius > radius) {
+            radius = graph.nodes[i].radius;
+            widest = static_cast<Index>(i);
+        }
+    return widest;
+}
+
+Shared<BodyThickness> body_thickness(const AnatomyModel& anatomy) {
+    std::vector<BodySolid> solids;
+    for (const ContextSolid& solid : anatomy.context) {
+        const auto parent = std::find_if(anatomy.context.begin(), anatomy.context.end(),
+                                         [&](const ContextSolid& other) { return other.name == solid.inside; });
+        solids.push_back({&solid.mesh, solid.material, parent == anatomy.context.end() ? "" : parent->material});
+    }
+    return std::make_shared<const BodyThickness>(solids);
+}
+
+Vec3 isocentre(const SceneSpec& spec, const AnatomyModel& anatomy) {
+    if (spec.c_arm.isocentre.name.empty()) return spec.c_arm.isocentre.point;
+    if (spec.c_arm.isocentre.name == "centre") {
+        Vec3 low = anatomy.lumen.vertices.front();
+        Vec3 high = low;
+        for (const Vec3& v : anatomy.lumen.vertices) {
+            low = low.cwiseMin(v);
+            high = high.cwiseMax(v);
+        }
+        return 0.5 * (low + high);
+    }
+    std::vector<std::string> names{"centre"};
+    for (const Landmark& landmark : anatomy.landmarks) {
+        if (landmark.name == spec.c_arm.isocentre.name) return landmark.pose.position;
+        names.push_back(landmark.name);
+    }
+    throw UserError(spec.c_arm.where, "isocentre: the anatomy has no landmark '" + spec.c_arm.isocentre.name +
+                                          "'; it has " + comma_list(names) +
+                                          did_you_mean(spec.c_arm.isocentre.name, names));
+}
+
+void add_camera(World& world, const SceneSpec& spec, const SceneModels& models) {
+    BeamSpec beam;
+    beam.c_arm.sid_mm = spec.c_arm.sid_mm;
+    beam.c_arm.sod_mm = spec.c_arm.sod_mm;
+    beam.c_arm.field_mm = spec.c_arm.field_of_view_mm;
+    beam.isocentre = isocentre(spec, *models.anatomy);
+    beam.primary_deg = spec.c_arm.primary_deg;
+    beam.secondary_deg = spec.c_arm.secondary_deg;
+    beam.pulses_per_s = spec.c_arm.frame_rate;
+    validate(beam, spec.c_arm.where);
+    const Entity camera = world.create(camera_entity);
+    world.add(camera, initial_state(beam));
+    world.add(camera, std::move(beam));
+    world.add(camera, models.thickness);
+    const Entity contrast = world.create(contrast_entity);
+    world.add(contrast, initial_state(*models.contrast));
+    world.add(contrast, models.contrast);
+}
+
 HeartSpec heart_spec(const SceneSpec& spec, const AnatomyModel& anatomy) {
     HeartSpec heart;
     heart.rate_bpm = spec.heart.rate_bpm;
@@ -196,6 +266,12 @@ std::shared_ptr<const SceneModels> build_models(const SceneSpec& spec, const Bui
         bind_points(*models->wall, anatomy->lumen.vertices, surface_particles, true, vertex_normals(anatomy->lumen));
     models->surface = std::make_shared<const LumenSurfaceModel>(
         build_lumen_surface(anatomy->lumen, anatomy->lumen_region, anatomy->lumen_radius, std::move(binding)));
+    ContrastSpec contrast;
+    contrast.cardiac_output_ml_s = spec.contrast.aortic_flow_ml_s;
+    contrast.concentration_mgi_ml = spec.contrast.iodine_mg_ml;
+    models->contrast =
+        std::make_shared<const ContrastModel>(build_contrast(anatomy->centreline, flow_root(*anatomy), contrast));
+    models->thickness = body_thickness(*anatomy);
     models->anatomy = std::move(anatomy);
     report(1.0, "ready");
     return models;
@@ -224,6 +300,7 @@ std::unique_ptr<World> build_world(const SceneSpec& spec, const SceneModels& mod
         world->add(heart, initial_state(built));
         world->add(heart, std::move(built));
     }
+    add_camera(*world, spec, models);
     for (const SceneEffect& effect : spec.effects) {
         if (!effect.enabled) continue;
         const Entity e = world->create("effect." + std::string(effect.info->name));

@@ -31,7 +31,7 @@ Vec3 point_at(const CatheterShape& shape, double arc) {
 
 Rail current_rail(const Parts& p) {
     const CatheterRoute& route = *p.catheter_route;
-    Rail rail = build_rail(route.graph, p.centreline->positions, p.catheter_state->route, p.mount->mouth);
+    Rail rail = build_rail(route.graph, route.path, p.catheter_state->route, p.mount->mouth);
     if (p.mount->follow_wire && p.wire) {
         const std::vector<Vec3> line = p.wire->polyline();
         std::vector<Vec3> nodes{p.mount->mouth.position};
@@ -95,7 +95,7 @@ double move_catheter(Parts& p, const Input& input, double h) {
     CatheterState& state = *p.catheter_state;
     CatheterRoute& route = *p.catheter_route;
     const std::vector<Vec3> guide = steering_guide(*p.catheter, route.shape);
-    update_route(route.graph, p.centreline->positions, guide, base_arc_mm(*p.catheter, state), state.route);
+    update_route(route.graph, route.path, guide, base_arc_mm(*p.catheter, state), state.route);
     const Rail rail = current_rail(p);
     const CatheterShape start = shape(*p.catheter, state, rail);
 
@@ -109,7 +109,7 @@ double move_catheter(Parts& p, const Input& input, double h) {
     command.direction_rad.resize(p.catheter->segments.size(), 0.0);
 
     const double steerable = p.catheter->steerable_length_mm();
-    const double limit = insertion_limit(route.graph, p.centreline->positions, state.route, steerable + 60.0);
+    const double limit = insertion_limit(route.graph, route.path, state.route, steerable + 60.0);
     const std::vector<WallLimit> limits = wall_limits(p, start);
     CatheterTaken taken = take(*p.catheter, state, command, rail, limits, h, limit);
     state = taken.state;

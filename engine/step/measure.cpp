@@ -88,6 +88,19 @@ void measure(Parts& p, const Input& /*input*/, const StepSums& sums, Channels& c
     for (const Vec3& u : p.supports->displacement) support = std::max(support, u.squaredNorm());
     c.support_displacement_mm = std::sqrt(support);
 
+    if (p.beam) {
+        const BeamState& beam = *p.beam_state;
+        c.beam_on = beam.pedal ? 1.0 : 0.0;
+        c.beam_time_s = beam.beam_time_s;
+        c.tube_voltage_kvp = beam.kvp;
+        c.detector_kerma_ngy = beam.detector_kerma_ngy;
+        c.air_kerma_mgy = beam.air_kerma_mgy;
+        c.dose_area_product_gycm2 = beam.dose_area_gycm2;
+        c.primary_angle_deg = beam.primary_deg;
+        c.secondary_angle_deg = beam.secondary_deg;
+    }
+    if (p.contrast) c.contrast_injected_ml = p.contrast_state->injected_ml;
+
     if (p.heart) {
         c.heart_phase = p.heart_state->phase;
         c.heart_displacement_mm = p.heart_state->displacement_mm;
@@ -101,6 +114,28 @@ void measure(Parts& p, const Input& /*input*/, const StepSums& sums, Channels& c
     }
 }
 
-void advance_imaging(Parts& /*p*/, const Input& /*input*/, double /*dt*/) {}
+void advance_imaging(Parts& p, const Input& input, double dt) {
+    if (p.beam) {
+        p.stage("beam");
+        const CArmPose pose =
+            c_arm_pose(p.beam->c_arm, p.beam->isocentre, p.beam_state->primary_deg, p.beam_state->secondary_deg);
+        const bool pedal = input.fluoroscopy >= 0.5;
+        // The thickness is looked up where it is needed: while the beam is off nothing depends on it.
+        const double water_mm = pedal && p.thickness ? p.thickness->water_mm(p.beam->c_arm, pose) : 0.0;
+        advance(*p.beam, *p.beam_state, {input.primary_angle, input.secondary_angle, pedal}, water_mm,
+                p.world->step_index - 1, dt);
+    }
+    if (p.contrast) {
+        p.stage("contrast");
+        Injection injection;
+        injection.flow_ml_s = input.contrast;
+        const bool by_catheter = p.catheter && (input.device >= 0.5 || !p.wire);
+        if (by_catheter)
+            injection.node = p.anatomy->centreline.nearest(p.catheter_route->shape.tip.position);
+        else if (p.wire)
+            injection.node = p.anatomy->centreline.nearest(p.wire->tip());
+        advance(*p.contrast, *p.contrast_state, injection, dt);
+    }
+}
 
 }  // namespace cathlab

@@ -35,7 +35,12 @@ Parts find_parts(World& world) {
     p.heart = world.first<HeartSpec>();
     p.heart_state = world.first<HeartState>();
     p.heart_contact = world.first<HeartContact>();
-    world.each<ActiveEffect>([&](Entity, ActiveEffect& active) { p.effects.push_back(active.effect.get()); });
+    p.beam = world.first<BeamSpec>();
+    p.beam_state = world.first<BeamState>();
+    if (const auto* thickness = world.first<Shared<BodyThickness>>()) p.thickness = thickness->get();
+    if (const auto* contrast = world.first<Shared<ContrastModel>>()) p.contrast = contrast->get();
+    p.contrast_state = world.first<ContrastState>();
+    world.each<ActiveEffect>([&](Entity, ActiveEffect& active) { p.effects.push_back(&active); });
     return p;
 }
 

@@ -8,12 +8,15 @@
 #include <vector>
 
 #include "anatomy/model.h"
+#include "beam/exposure.h"
+#include "beam/thickness.h"
 #include "catheter/mount.h"
 #include "catheter/route.h"
 #include "catheter/shape.h"
 #include "catheter/wall_limit.h"
 #include "contact/contact_set.h"
 #include "contact/lumen_surface.h"
+#include "contrast/transport.h"
 #include "core/event.h"
 #include "effects/effect.h"
 #include "heart/cylinder_rows.h"
@@ -32,7 +35,7 @@ namespace cathlab {
 inline constexpr Index wire_device = 0;
 inline constexpr Index catheter_device = 1;
 
-/// Component of the vessel: the centre-line's nodes hang on the wall, so that shaft, camera and bolus follow it.
+/// Component of the vessel: the centre-line's nodes hang on the wall, so that camera and bolus follow it.
 struct MovedCentreline {
     PointBinding binding;
     std::vector<Vec3> positions;  ///< (nodes) now, mm; follows from the wall, not hashed
@@ -69,6 +72,10 @@ inline void visit(Archive& archive, WireDrive& drive) {
 /// Component of the catheter beside CatheterSpec, CatheterState and CatheterMount.
 struct CatheterRoute {
     RouteGraph graph;
+    /// The path of the shaft: the centre-line as it was at rest.  The shaft has its own stiffness, and the wall slides
+    /// over it; a rail that moved with each dent in the wall would carry the wire that makes the dent along, and run
+    /// away with it.
+    std::vector<Vec3> path;
     CatheterShape shape;  ///< where it lies now; follows from state and wall
 };
 
@@ -108,7 +115,19 @@ struct Parts {
     const HeartSpec* heart = nullptr;
     HeartState* heart_state = nullptr;
     HeartContact* heart_contact = nullptr;
-    std::vector<Effect*> effects;  ///< in the order of their entities
+    const BeamSpec* beam = nullptr;
+    BeamState* beam_state = nullptr;
+    const BodyThickness* thickness = nullptr;
+    const ContrastModel* contrast = nullptr;
+    ContrastState* contrast_state = nullptr;
+    std::vector<ActiveEffect*> effects;  ///< in the order of their entities
+
+    /// Calls f(effect) for the effects that use a hook.
+    template <class F>
+    void each_effect(Hook hook, F&& f) const {
+        for (ActiveEffect* active : effects)
+            if (active->info->hooks & hook) f(*active->effect);
+    }
 
     void stage(std::string_view room) const {
         if (probe && probe->begin) probe->begin(room);

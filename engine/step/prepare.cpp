@@ -68,9 +68,10 @@ void prepare(World& world) {
         const Entity catheter = world.owner<CatheterMount>();
         CatheterRoute route;
         route.graph = build_route_graph((*anatomy)->centreline, mount->entry, mount->mouth);
+        for (const CentrelineNode& node : (*anatomy)->centreline.nodes) route.path.push_back(node.position);
         world.add(catheter, std::move(route));
         Parts parts = find_parts(world);
-        update_route(parts.catheter_route->graph, centreline.positions, {},
+        update_route(parts.catheter_route->graph, parts.catheter_route->path, {},
                      base_arc_mm(*parts.catheter, *parts.catheter_state), parts.catheter_state->route);
         settle_catheter(parts);
     }

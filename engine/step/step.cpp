@@ -36,13 +36,13 @@ void step(World& world, const Input& wanted, Channels& channels) {
     // [effects: input]  between the operator's command and the device
     parts.stage("effects");
     Input input = wanted;
-    for (Effect* effect : parts.effects) effect->input(context, input);
+    parts.each_effect(hook_input, [&](Effect& effect) { effect.input(context, input); });
     input = clamped(parts, input);
 
     // [effects: drive]  where the supports and the heart go
     Drive drive;
     drive.support_displacement.assign(parts.wall->size(), Vec3::Zero());
-    for (Effect* effect : parts.effects) effect->drive(context, drive);
+    parts.each_effect(hook_drive, [&](Effect& effect) { effect.drive(context, drive); });
     const std::vector<Vec3> before = parts.supports->displacement;
     for (std::size_t i = 0; i < parts.wall->size(); ++i)
         if (!parts.wall->fixed[i]) drive.support_displacement[i].setZero();
@@ -63,7 +63,7 @@ void step(World& world, const Input& wanted, Channels& channels) {
     measure(parts, input, sums, channels);
     // [effects: measure]  what a sensor would read
     parts.stage("effects");
-    for (Effect* effect : parts.effects) effect->measure(context, channels);
+    parts.each_effect(hook_measure, [&](Effect& effect) { effect.measure(context, channels); });
     parts.stage("");
 }
 

@@ -3,30 +3,45 @@
 #include <algorithm>
 
 namespace cathlab {
+namespace {
+
+// The bond of the annulus to the heart, in units of a particle's own goal stiffness: stiff enough that the ring follows
+// within a twentieth, soft enough that it does not tear at its neighbours.
+constexpr double bond_stiffness = 20.0;
+
+}  // namespace
 
 WallForces::WallForces(const Parts& p, const EffectContext& context) {
     const std::size_t n = p.wall->size();
-    if (p.effects.empty()) return;
-    std::vector<double>& scale = p.wall_scratch->stiffness_scale;
-    scale.assign(n, 1.0);
-    for (Effect* effect : p.effects) effect->material(context, scale);
-    // A scale of one everywhere is what an empty array means: a world with an effect that leaves the material alone
-    // stays bit-identical to one without it.
-    if (std::all_of(scale.begin(), scale.end(), [](double s) { return s == 1.0; })) scale.clear();
-
-    for (Effect* effect : p.effects) effect->constraint(context, anchors_);
-    anchor_force_.assign(anchors_.size(), Vec3::Zero());
-
-    external_.assign(n, Vec3::Zero());
-    for (Effect* effect : p.effects) effect->force(context, external_);
-    if (std::all_of(external_.begin(), external_.end(), [](const Vec3& f) { return f.isZero(0.0); })) external_.clear();
+    unsigned hooks = 0;
+    for (const ActiveEffect* active : p.effects) hooks |= active->info->hooks;
+    if (hooks & hook_material) {
+        std::vector<double>& scale = p.wall_scratch->stiffness_scale;
+        scale.assign(n, 1.0);
+        p.each_effect(hook_material, [&](Effect& effect) { effect.material(context, scale); });
+    }
+    if (hooks & hook_constraint)
+        p.each_effect(hook_constraint, [&](Effect& effect) { effect.constraint(context, anchors_); });
+    if (hooks & hook_force) {
+        external_.assign(n, Vec3::Zero());
+        p.each_effect(hook_force, [&](Effect& effect) { effect.force(context, external_); });
+    }
 }
 
 void WallForces::detect_heart(const Parts& p, const Drive& drive, double h) {
+    anchor_force_.assign(anchors_.size(), Vec3::Zero());
     if (!p.heart) return;
     advance(*p.heart, *p.heart_state, h, drive.heart_rate_scale);
     const double displacement = p.heart_state->displacement_mm + drive.heart_displacement_mm;
     const Pose cylinder = cylinder_pose(*p.heart, p.anatomy->annulus->pose, displacement);
+    if (p.heart->bonded)
+        for (const Index i : p.annulus->particles) {
+            const auto k = static_cast<std::size_t>(i);
+            if (p.wall->fixed[k]) continue;
+            anchors_.push_back(
+                {i, p.wall->rest[k] + displacement * p.annulus->axis, bond_stiffness * p.wall->stiffness[k]});
+        }
+    anchor_force_.resize(anchors_.size(), Vec3::Zero());
     find_rows(*p.heart, cylinder, p.wall_state->x, p.annulus->candidates, p.settings->contact_margin_mm, rows_);
     // Particles without a row are not touched: their force ends here.
     std::vector<double> kept(p.wall->size(), 0.0);
