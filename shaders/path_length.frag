@@ -1,5 +1,5 @@
 #version 330 core
-// Adds +distance where the ray leaves a closed surface and -distance where it enters (Freud et al. 2006).
+// Adds +distance where the ray leaves a closed surface and -distance where it enters [freud2006].
 // Blended with GL_ONE, GL_ONE into float32: (path length, leaving - entering, contrast moment, contrast jump).
 in vec3 v_from_source;
 in float v_value;

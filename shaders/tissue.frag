@@ -22,7 +22,7 @@ void main() {
     // Faint streaks, finer along one axis: gives the eye something that moves with the wall.
     float grain = sin(v_grain.x * 1.7 + 1.3 * sin(v_grain.z * 0.45)) * sin(v_grain.y * 1.9 + 1.1 * sin(v_grain.z * 0.6));
     vec3 color = v_color.rgb * (1.0 + 0.07 * v_color.a * grain);
-    vec3 linear = (color * diffuse + vec3(0.45) * specular) * reach * 1.35;
+    vec3 linear = (color * diffuse + vec3(0.45) * specular) * reach * 0.62;
     // Filmic shoulder, then the display's gamma.
     linear = linear / (linear + vec3(0.55)) * 1.55;
     o_color = vec4(pow(clamp(linear, 0.0, 1.0), vec3(1.0 / 2.2)), 1.0);

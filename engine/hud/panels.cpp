@@ -12,7 +12,7 @@ namespace cathlab {
 
 namespace {
 
-// Okabe and Ito's palette: told apart by colour-blind eyes.
+// Told apart by colour-blind eyes [okabe2008].
 constexpr ImU32 calm = IM_COL32(0, 158, 115, 255);
 constexpr ImU32 alarm = IM_COL32(230, 159, 0, 255);
 constexpr ImU32 stop = IM_COL32(213, 94, 0, 255);

@@ -234,8 +234,9 @@ void draw_devices(const std::vector<ChordPiece>& pieces, int media, const Projec
                     if (!boxes[i].holds(x + 0.5, static_cast<double>(y) + 0.5)) continue;
                     double sum = 0;
                     for (int k = 0; k < side * side; ++k) {
-                        const double px = x + (k % side + 0.5) / side;
-                        const double py = static_cast<double>(y) + (k / side + 0.5) / side;
+                        const int column = k % side, line = k / side;
+                        const double px = x + (column + 0.5) / side;
+                        const double py = static_cast<double>(y) + (line + 0.5) / side;
                         const Vec3 d = projection.to_detector(px, py);
                         if (test.near_axis(d)) sum += chord(piece, projection.source(), d.normalized());
                     }

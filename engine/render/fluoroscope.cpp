@@ -169,12 +169,14 @@ void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection
     const int width = projection.width();
     transmission.resize(count);
     context_intensity = ImageF(width, projection.height());
-    workers.for_ranges(count, 8192, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
+    const auto columns = static_cast<std::size_t>(width);
+    workers.for_ranges(count / columns, 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin * columns; i < end * columns; ++i) {
             // Inverse square and obliquity together: cos^3 of the angle to the detector's normal.
-            const double x = static_cast<double>(i % static_cast<std::size_t>(width)) + 0.5;
-            const double y = static_cast<double>(i / static_cast<std::size_t>(width)) + 0.5;
-            const double cosine = projection.ray(x, y).dot(projection.normal());
+            const std::size_t row = i / columns;
+            const Vec3 hit =
+                projection.to_detector(static_cast<double>(i - row * columns) + 0.5, static_cast<double>(row) + 0.5);
+            const double cosine = projection.source_detector_mm() / std::sqrt(hit.squaredNorm());
             const auto geometry = static_cast<float>(cosine * cosine * cosine);
             float sum = 0;
             for (std::size_t k = 0; k < energy_bins; ++k) {

@@ -82,7 +82,7 @@ struct FrameExposure {
 struct FrameCamera {
     Pose pose;                      ///< z forward, x right, y down
     double field_of_view_deg = 90;  ///< vertical, (10, 150)
-    double light_range_mm = 45;     ///< where the headlight has fallen to a quarter
+    double light_range_mm = 32;     ///< where the headlight has fallen to a quarter
 };
 
 struct FrameDescription {

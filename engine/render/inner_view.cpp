@@ -33,7 +33,7 @@ std::array<float, 16> clip_matrix(double field_of_view_deg, double aspect) {
 }
 
 Vec3 wall_color(double force, double limit) {
-    const Vec3 tissue(0.62, 0.155, 0.115), yellow(0.95, 0.72, 0.10), alarm(0.80, 0.62, 1.0);
+    const Vec3 tissue(0.60, 0.125, 0.085), yellow(0.95, 0.72, 0.10), alarm(0.80, 0.62, 1.0);
     const double t = std::clamp(force / std::max(1e-9, limit), 0.0, 1.0);
     return t < 0.5 ? Vec3(tissue + 2 * t * (yellow - tissue)) : Vec3(yellow + (2 * t - 1) * (alarm - yellow));
 }
@@ -129,7 +129,7 @@ void InnerView::Impl::fill(const FrameDescription& frame) {
     const std::vector<Vec3>& normals = computed.empty() ? lumen.normals : computed;
 
     // Only what the light reaches and what stands before the camera is sent to GL.
-    const double reach = std::min(far_mm, 5 * frame.inner_camera->light_range_mm);
+    const double reach = std::min(far_mm, 4.5 * frame.inner_camera->light_range_mm);
     std::vector<Vec3> local(n);
     for (std::size_t i = 0; i < n; ++i) local[i] = camera.to_local(lumen.vertices[i]);
     const auto seen = [&](const Vec3& p) { return p.z() > -5.0 && p.squaredNorm() < reach * reach; };
