@@ -33,19 +33,19 @@ inline void subtract(Column& c, const double* v, double s, int first) {
 
 }  // namespace
 
-void BlockChain::factor_block(const double* diagonal, const Factor* before, Factor& f) {
+void BlockChain::factor_block(const Mat6& diagonal, const Factor* before, Factor& f) {
     Column unscaled[6];  // L_k d_k
 #pragma GCC unroll 6
     for (int c = 0; c < 6; ++c) {
         const int top = c / 2;  // rows above the diagonal are left as they come
-        Column column = load(diagonal + 6 * c);
+        Column column = load(diagonal.col(c).data());
         if (before != nullptr) {
 #pragma GCC unroll 6
-            for (int k = 0; k < 6; ++k) subtract(column, before->z + 6 * k, before->w[6 * k + c], top);
+            for (int k = 0; k < 6; ++k) subtract(column, before->z[k], before->w[k][c], top);
         }
 #pragma GCC unroll 6
         for (int k = 0; k < c; ++k) {
-            const double s = f.l[6 * k + c];
+            const double s = f.l[k][c];
             for (int i = top; i < 3; ++i) column.p[i] -= unscaled[k].p[i] * s;
         }
         const double pivot = column.p[c / 2][c % 2];
@@ -53,19 +53,19 @@ void BlockChain::factor_block(const double* diagonal, const Factor* before, Fact
         f.inverse[c] = 1.0 / pivot;
         unscaled[c] = column;
         for (Pair& pair : column.p) pair *= f.inverse[c];
-        store(f.l + 6 * c, column);
+        store(f.l[c], column);
     }
 }
 
-void BlockChain::cross_block(const double* below, Factor& f) {
+void BlockChain::cross_block(const Mat6& below, Factor& f) {
 #pragma GCC unroll 6
     for (int c = 0; c < 6; ++c) {
-        Column column = load(below + 6 * c);
+        Column column = load(below.col(c).data());
 #pragma GCC unroll 6
-        for (int k = 0; k < c; ++k) subtract(column, f.z + 6 * k, f.l[6 * k + c], 0);
-        store(f.z + 6 * c, column);
+        for (int k = 0; k < c; ++k) subtract(column, f.z[k], f.l[k][c], 0);
+        store(f.z[c], column);
         for (Pair& pair : column.p) pair *= f.inverse[c];
-        store(f.w + 6 * c, column);
+        store(f.w[c], column);
     }
 }
 
@@ -81,14 +81,14 @@ void BlockChain::factor_and_solve(std::size_t first) {
     const std::size_t n = size();
     for (std::size_t i = first; i < n; ++i) {
         Factor& f = factor_[i];
-        factor_block(diagonal[i].data(), i > 0 ? &factor_[i - 1] : nullptr, f);
-        if (i + 1 < n) cross_block(below[i].data(), f);
+        factor_block(diagonal[i], i > 0 ? &factor_[i - 1] : nullptr, f);
+        if (i + 1 < n) cross_block(below[i], f);
         Column y = load(right[i].data());
         if (i > 0)
-            for (int k = 0; k < 6; ++k) subtract(y, factor_[i - 1].w + 6 * k, factor_[i - 1].y[k], 0);
+            for (int k = 0; k < 6; ++k) subtract(y, factor_[i - 1].w[k], factor_[i - 1].y[k], 0);
         store(f.y, y);
         for (int k = 0; k < 5; ++k)
-            for (int r = k + 1; r < 6; ++r) f.y[r] -= f.l[6 * k + r] * f.y[k];
+            for (int r = k + 1; r < 6; ++r) f.y[r] -= f.l[k][r] * f.y[k];
     }
     for (std::size_t i = n; i-- > 0;) {
         const Factor& f = factor_[i];
@@ -96,10 +96,10 @@ void BlockChain::factor_and_solve(std::size_t first) {
         for (int c = 0; c < 6; ++c) {
             d[c] = f.y[c] * f.inverse[c];
             if (i + 1 < n)
-                for (int r = 0; r < 6; ++r) d[c] -= f.w[6 * c + r] * solution[i + 1][r];
+                for (int r = 0; r < 6; ++r) d[c] -= f.w[c][r] * solution[i + 1][r];
         }
         for (int c = 4; c >= 0; --c)
-            for (int r = c + 1; r < 6; ++r) d[c] -= f.l[6 * c + r] * d[r];
+            for (int r = c + 1; r < 6; ++r) d[c] -= f.l[c][r] * d[r];
         std::copy(d, d + 6, solution[i].data());
     }
 }

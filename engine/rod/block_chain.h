@@ -21,22 +21,22 @@ public:
     std::size_t size() const { return diagonal.size(); }
 
     /// Block L D L^T from block `first` on (earlier factors are kept from the last call), then both substitutions:
-    ///   S_i = D_i - Z_{i-1} W_{i-1}^T = L_i d_i L_i^T,   Z_i = E_i L_i^{-T},   W_i = Z_i d_i^{-1}   (L_i unit, d_i
-    ///   diagonal).
+    ///   S_i = D_i - Z_{i-1} W_{i-1}^T = L_i d_i L_i^T,   Z_i = E_i L_i^{-T},   W_i = Z_i d_i^{-1},
+    /// with L_i unit lower triangular and d_i diagonal.
     /// Throws std::logic_error where a pivot is not positive (the system was not positive definite, or not finite).
     void factor_and_solve(std::size_t first);
 
 private:
     struct Factor {
-        alignas(16) double l[36];         // L_i by columns; what stands on and above its diagonal is not used
-        alignas(16) double z[36], w[36];  // Z_i, W_i by columns
-        double inverse[6];                // 1 / d_i
-        alignas(16) double y[6];          // L_i^{-1} (r_i - W_{i-1} y_{i-1})
+        alignas(16) double l[6][6];           // L_i by columns; what stands on and above its diagonal is not used
+        alignas(16) double z[6][6], w[6][6];  // Z_i, W_i by columns
+        double inverse[6];                    // 1 / d_i
+        alignas(16) double y[6];              // L_i^{-1} (r_i - W_{i-1} y_{i-1})
     };
     std::vector<Factor> factor_;
 
-    static void factor_block(const double* diagonal, const Factor* before, Factor& f);
-    static void cross_block(const double* below, Factor& f);
+    static void factor_block(const Mat6& diagonal, const Factor* before, Factor& f);
+    static void cross_block(const Mat6& below, Factor& f);
 };
 
 }  // namespace cathlab

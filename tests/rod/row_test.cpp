@@ -9,8 +9,6 @@
 namespace cathlab {
 namespace {
 
-using test::substep;
-
 Vec3 momentum(const Rod& rod) {
     Vec3 p = Vec3::Zero();
     for (std::size_t i = 0; i < rod.free_link_count(); ++i) p += rod.link_mass(i) * rod.link_velocity(i);
