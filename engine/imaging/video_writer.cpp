@@ -127,11 +127,14 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, double 
     impl_->width = width;
     impl_->height = height;
     require_writable(path, impl_->part);
-    if (extension == ".avi") {
-        if (!impl_->open("FFV1", fps)) throw UserError("cannot write video '" + path + "': no FFV1 encoder");
-    } else if (!impl_->open("avc1", fps)) {
+    bool open = impl_->open(extension == ".avi" ? "FFV1" : "avc1", fps);
+    if (!open && extension == ".mp4") {
         log::warn("no H.264 encoder here; '" + path + "' is written as MPEG-4 part 2 (mp4v)");
-        if (!impl_->open("mp4v", fps)) throw UserError("cannot write video '" + path + "': no H.264 or MPEG-4 encoder");
+        open = impl_->open("mp4v", fps);
+    }
+    if (!open) {
+        impl_->drop_part();
+        throw UserError("cannot write video '" + path + "': no encoder for " + extension + " in this OpenCV");
     }
     impl_->encoder = std::thread([impl = impl_.get()] { impl->encode(); });
 }

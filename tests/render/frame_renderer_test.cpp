@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "beam/materials.h"
+#include <cstdlib>
+#include <utility>
+
 #include "beam/spectrum.h"
 #include "core/errors.h"
 #include "scene.h"
@@ -139,6 +141,23 @@ TEST(Fluoroscopy, AnUnknownMaterialIsNamedBeforeTheFirstFrame) {
     } catch (const UserError& error) {
         EXPECT_NE(std::string(error.what()).find("'water'"), std::string::npos) << error.what();
     }
+}
+
+TEST(Target, EglDrawsWhatOsmesaDraws) {
+    std::unique_ptr<GlTarget> egl;
+    try {
+        egl = make_gl_target("egl");
+    } catch (const UserError& missing) {
+        GTEST_SKIP() << "no surfaceless EGL here: " << missing.what();
+    }
+    FrameRenderer first(make_gl_target("osmesa")), second(std::move(egl));
+    Image8 a, b;
+    const FrameDescription f = patient();
+    first.render(f, a);
+    second.render(f, b);
+    std::size_t different = 0;  // another driver may round another way, in few pixels
+    for (std::size_t i = 0; i < a.rgb.size(); ++i) different += std::abs(a.rgb[i] - b.rgb[i]) > 2 ? 1 : 0;
+    EXPECT_LT(different, a.rgb.size() / 1000);
 }
 
 TEST(InnerView, ForceOnTheWallShowsAsColour) {
