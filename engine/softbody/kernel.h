@@ -7,9 +7,9 @@
 
 namespace cathlab::kernel {
 
-inline constexpr int lanes = 8;               ///< clusters in a group
-inline constexpr int transform_doubles = 12;  ///< of a cluster: columns of R, then t; goal = R X + t
-inline constexpr int polar_rounds = 24;       ///< at most; a warm start ends after two or three
+inline constexpr std::size_t lanes = 8;               ///< clusters in a group
+inline constexpr std::size_t transform_doubles = 12;  ///< of a cluster: columns of R, then t; goal = R X + t
+inline constexpr int polar_rounds = 24;               ///< at most; a warm start ends after two or three
 
 /// ClusterGroups (softbody/model.h) without its vectors.
 template <class Real>

@@ -12,7 +12,7 @@ using NAMED(V) = REAL __attribute__((vector_size(WIDTH * sizeof(REAL))));
 TARGET static inline void NAMED(load)(const REAL* from, NAMED(V) & to) { __builtin_memcpy(&to, from, sizeof to); }
 
 // The vector of one axis from blocks of doubles.
-TARGET static inline void NAMED(join)(const Block (*now)[3], int axis, NAMED(V) & to) {
+TARGET static inline void NAMED(join)(const Block (*now)[3], std::size_t axis, NAMED(V) & to) {
 #if JOINED
     using Part = REAL __attribute__((vector_size(BLOCK * sizeof(REAL))));
     const Part low = __builtin_convertvector(now[0][axis], Part), high = __builtin_convertvector(now[1][axis], Part);
@@ -52,7 +52,7 @@ TARGET static inline void NAMED(polar)(const NAMED(V) * a, NAMED(V) * q) {
     const REAL slack = sizeof(REAL) == 8 ? REAL(1e-10) : REAL(1e-5);
     const REAL arrived = sizeof(REAL) == 8 ? REAL(1e-14) : REAL(1e-8);  // square of the last turn; the error is its square
     const NAMED(V) zero = {}, one = zero + REAL(1);
-    auto done = zero != zero;
+    auto done = zero > one;
     // Covariances are scaled to a largest entry of 1, lest their cubes leave the range of a float.
     NAMED(V) size = zero + tiny;
     for (int k = 0; k < 9; ++k) {
@@ -94,7 +94,7 @@ TARGET static inline void NAMED(polar)(const NAMED(V) * a, NAMED(V) * q) {
         NAMED(V) length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3];
         for (int l = 0; l < WIDTH; ++l) length[l] = SQRT(length[l]);
         for (int k = 0; k < 4; ++k) q[k] = done ? q[k] : n[k] / length;
-        done = done | (turn2 < arrived) | (turn2 != turn2);
+        done = done | ~(turn2 >= arrived);  // a turn that is no number ends it too
         bool all = true;
         for (int l = 0; l < WIDTH; ++l) all = all && done[l] != 0;
         if (all) break;
@@ -107,10 +107,10 @@ TARGET static void NAMED(fit)(const void* groups, const double* x, double* rotat
     for (std::size_t g = begin; g < end; ++g) {
         const auto first = static_cast<std::size_t>(view.first_slot[g]);
         const auto last = static_cast<std::size_t>(view.first_slot[g + 1]);
-        for (int half = 0; half < lanes; half += WIDTH) {
-            constexpr int blocks = WIDTH / BLOCK;
+        for (std::size_t half = 0; half < lanes; half += WIDTH) {
+            constexpr std::size_t blocks = WIDTH / BLOCK;
             Block origin[blocks][3];
-            for (int k = 0; k < blocks; ++k)
+            for (std::size_t k = 0; k < blocks; ++k)
                 places(x, view.particle + first * lanes + half + k * BLOCK, origin[k][0], origin[k][1], origin[k][2]);
             NAMED(V) c[3], a[9];
             for (auto& v : c) v = NAMED(V){};
@@ -120,30 +120,30 @@ TARGET static void NAMED(fit)(const void* groups, const double* x, double* rotat
                 const REAL* member = view.member + slot * 4 * lanes + half;
                 NAMED(V) d[3], moment[3], weight;
                 Block now[blocks][3];
-                for (int k = 0; k < blocks; ++k) {
+                for (std::size_t k = 0; k < blocks; ++k) {
                     places(x, particle + k * BLOCK, now[k][0], now[k][1], now[k][2]);
-                    for (int axis = 0; axis < 3; ++axis) now[k][axis] -= origin[k][axis];
+                    for (std::size_t axis = 0; axis < 3; ++axis) now[k][axis] -= origin[k][axis];
                 }
                 // Differences are taken in double, then rounded: a float could not tell places at 500 mm well enough apart.
-                for (int axis = 0; axis < 3; ++axis) NAMED(join)(now, axis, d[axis]);
-                for (int k = 0; k < 3; ++k) NAMED(load)(member + k * lanes, moment[k]);
+                for (std::size_t axis = 0; axis < 3; ++axis) NAMED(join)(now, axis, d[axis]);
+                for (std::size_t k = 0; k < 3; ++k) NAMED(load)(member + k * lanes, moment[k]);
                 NAMED(load)(member + 3 * lanes, weight);
-                for (int k = 0; k < 3; ++k) {
+                for (std::size_t k = 0; k < 3; ++k) {
                     c[k] += weight * d[k];
-                    for (int j = 0; j < 3; ++j) a[3 * k + j] += d[k] * moment[j];
+                    for (std::size_t j = 0; j < 3; ++j) a[3 * k + j] += d[k] * moment[j];
                 }
             }
             NAMED(V) q[4], r[9];
             double* turn = rotation + g * 4 * lanes + half;
-            for (int k = 0; k < 4; ++k)
-                for (int l = 0; l < WIDTH; ++l) q[k][l] = static_cast<REAL>(turn[k * lanes + l]);
+            for (std::size_t k = 0; k < 4; ++k)
+                for (std::size_t l = 0; l < WIDTH; ++l) q[k][l] = static_cast<REAL>(turn[k * lanes + l]);
             NAMED(polar)(a, q);
             NAMED(matrix_of)(q, r);
-            for (int l = 0; l < WIDTH; ++l) {
-                for (int k = 0; k < 4; ++k) turn[k * lanes + l] = static_cast<double>(q[k][l]);
-                double* out = transform + (g * lanes + static_cast<std::size_t>(half + l)) * transform_doubles;
+            for (std::size_t l = 0; l < WIDTH; ++l) {
+                for (std::size_t k = 0; k < 4; ++k) turn[k * lanes + l] = static_cast<double>(q[k][l]);
+                double* out = transform + (g * lanes + (half + l)) * transform_doubles;
                 const double* rest = view.rest_centroid + g * 3 * lanes + half + l;
-                for (int k = 0; k < 3; ++k) {
+                for (std::size_t k = 0; k < 3; ++k) {
                     const double r0 = r[3 * k][l], r1 = r[3 * k + 1][l], r2 = r[3 * k + 2][l];
                     out[k] = r0;
                     out[3 + k] = r1;
@@ -157,14 +157,14 @@ TARGET static void NAMED(fit)(const void* groups, const double* x, double* rotat
 }
 
 TARGET static void NAMED(polar_of)(const double* matrix, double* quaternion) {
-    for (int half = 0; half < lanes; half += WIDTH) {
+    for (std::size_t half = 0; half < lanes; half += WIDTH) {
         NAMED(V) a[9], q[4];
-        for (int l = 0; l < WIDTH; ++l) {
-            for (int k = 0; k < 9; ++k) a[k][l] = static_cast<REAL>(matrix[k * lanes + half + l]);
-            for (int k = 0; k < 4; ++k) q[k][l] = static_cast<REAL>(quaternion[k * lanes + half + l]);
+        for (std::size_t l = 0; l < WIDTH; ++l) {
+            for (std::size_t k = 0; k < 9; ++k) a[k][l] = static_cast<REAL>(matrix[k * lanes + half + l]);
+            for (std::size_t k = 0; k < 4; ++k) q[k][l] = static_cast<REAL>(quaternion[k * lanes + half + l]);
         }
         NAMED(polar)(a, q);
-        for (int l = 0; l < WIDTH; ++l)
-            for (int k = 0; k < 4; ++k) quaternion[k * lanes + half + l] = static_cast<double>(q[k][l]);
+        for (std::size_t l = 0; l < WIDTH; ++l)
+            for (std::size_t k = 0; k < 4; ++k) quaternion[k * lanes + half + l] = static_cast<double>(q[k][l]);
     }
 }

@@ -24,11 +24,11 @@ NearGrid::NearGrid(std::span<const Vec3> points, double cell_mm) : points_(point
     const auto count = [&] { return ((high - low_) / cell_ + Vec3::Ones()).prod(); };
     while (count() > most_cells) cell_ *= 1.5;
     cells_ = ((high - low_) / cell_).array().floor().cast<int>() + 1;
-    first_.assign(static_cast<std::size_t>(cells_.prod()) + 1, 0);
+    first_.assign(row(0, 0, cells_.z()) + 1, 0);
     std::vector<std::size_t> cell(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Eigen::Vector3i c = cell_of(points[i]);
-        cell[i] = static_cast<std::size_t>((c.z() * cells_.y() + c.y()) * cells_.x() + c.x());
+        cell[i] = row(c.x(), c.y(), c.z());
         ++first_[cell[i] + 1];
     }
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
@@ -46,13 +46,19 @@ Eigen::Vector3i NearGrid::cell_of(const Vec3& p) const {
     return c;
 }
 
+std::size_t NearGrid::row(int x, int y, int z) const {
+    const Eigen::Matrix<std::size_t, 3, 1> size = cells_.cast<std::size_t>();
+    return (static_cast<std::size_t>(z) * size.y() + static_cast<std::size_t>(y)) * size.x() +
+           static_cast<std::size_t>(x);
+}
+
 const std::vector<std::pair<double, Index>>& NearGrid::within(const Vec3& p, double radius) {
     found_.clear();
     const Eigen::Vector3i a = cell_of(p - Vec3::Constant(radius)), b = cell_of(p + Vec3::Constant(radius));
     for (int z = a.z(); z <= b.z(); ++z)
         for (int y = a.y(); y <= b.y(); ++y)
             for (int x = a.x(); x <= b.x(); ++x) {
-                const auto c = static_cast<std::size_t>((z * cells_.y() + y) * cells_.x() + x);
+                const auto c = row(x, y, z);
                 for (Index k = first_[c]; k < first_[c + 1]; ++k) {
                     const Index i = order_[static_cast<std::size_t>(k)];
                     const double d2 = (points_[static_cast<std::size_t>(i)] - p).squaredNorm();

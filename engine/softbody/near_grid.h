@@ -20,6 +20,7 @@ public:
 
 private:
     Eigen::Vector3i cell_of(const Vec3& p) const;
+    std::size_t row(int x, int y, int z) const;  ///< of a cell in first_
 
     std::span<const Vec3> points_;
     double cell_ = 1.0, diagonal_ = 0.0;

@@ -13,7 +13,7 @@
 namespace cathlab {
 namespace {
 
-constexpr int lanes = kernel::lanes;
+constexpr int lanes = static_cast<int>(kernel::lanes);
 
 struct Batch {
     std::array<double, 9 * lanes> matrix{};
