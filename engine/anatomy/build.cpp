@@ -146,7 +146,7 @@ AnatomyModel build_anatomy(const AnatomySpec& spec, const Workers& workers, cons
     attribute(model.lumen, layout, model.lumen_region, model.lumen_radius);
 
     tell(0.92, "torso");
-    if (spec.torso) model.context = make_torso(tree, workers);
+    if (spec.torso) model.context = make_torso(workers);
     tell(1.0, "done");
     return model;
 }

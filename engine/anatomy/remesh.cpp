@@ -34,15 +34,19 @@ public:
                 if (collapse_short() * 200 < t_.size()) break;
             }
             flip(false);
+            mend_needles();
             relax();
             project();
             measure_sizes();
         }
         for (int k = 0; k < 3; ++k) {
             flip(true);
+            mend_needles();
             relax();
             project();
         }
+        flip(true);
+        mend_needles();
         flip(true);
         return compacted();
     }
@@ -67,6 +71,28 @@ private:
                 if (!around_[i].empty()) size_[i] = goal_.size(p_[i]);
             }
         });
+    }
+
+    /// Collapses the shortest edge of triangles that are needles.
+    void mend_needles() {
+        for (std::size_t i = 0; i < t_.size(); ++i) {
+            if (t_[i][0] < 0) continue;
+            const Triangle t = t_[i];
+            double shortest = 1e300;
+            double longest = 0.0;
+            int at_edge = 0;
+            for (int k = 0; k < 3; ++k) {
+                const double l = length(t[k], t[(k + 1) % 3]);
+                longest = std::max(longest, l);
+                if (l < shortest) {
+                    shortest = l;
+                    at_edge = k;
+                }
+            }
+            const double area = normal(p(t[0]), p(t[1]), p(t[2])).norm();
+            if (area < 0.2 * longest * longest && shortest < 0.4 * longest)
+                collapse(t[at_edge], t[(at_edge + 1) % 3], 2.0 * longest);
+        }
     }
 
     double length(Index a, Index b) { return (p(a) - p(b)).norm(); }
@@ -190,12 +216,15 @@ private:
             const double longest =
                 std::max({(q[1] - q[0]).squaredNorm(), (q[2] - q[1]).squaredNorm(), (q[0] - q[2]).squaredNorm()});
             if (after.norm() < 0.1 * longest) return false;  // a sliver
+            const double was = std::max({(p(t[1]) - p(t[0])).squaredNorm(), (p(t[2]) - p(t[1])).squaredNorm(),
+                                         (p(t[0]) - p(t[2])).squaredNorm()});
+            if (before.norm() < 0.1 * was) continue;  // a sliver's normal says nothing
             if (before.dot(after) < 0.5 * before.norm() * after.norm()) return false;
         }
         return true;
     }
 
-    bool collapse(Index a, Index b) {
+    bool collapse(Index a, Index b, double longest_allowed = 0.0) {
         Index left = 0;
         Index right = 0;
         if (!wings(a, b, left, right)) return false;
@@ -209,7 +238,7 @@ private:
         if (common != 2) return false;
         if (at(a).size() + at(b).size() - 4 > 10) return false;
         const Vec3 target = 0.5 * (p(a) + p(b));
-        const double limit = 4.0 / 3.0 * wanted(a, b);
+        const double limit = std::max(4.0 / 3.0 * wanted(a, b), longest_allowed);
         if (!stays_good(a, b, target, limit) || !stays_good(b, a, target, limit)) return false;
         p(a) = target;
         size(a) = wanted(a, b);
@@ -261,9 +290,10 @@ private:
             const Vec3 n1 = normal(p(b), p(a), p(d));
             const Vec3 m0 = normal(p(a), p(d), p(c));
             const Vec3 m1 = normal(p(d), p(b), p(c));
-            if (n0.dot(n1) < 0.7 * n0.norm() * n1.norm()) return;  // never across a crease
-            const Vec3 n = (n0 + n1).normalized();
             const double longest = std::max((p(c) - p(d)).squaredNorm(), (p(a) - p(b)).squaredNorm());
+            const bool sliver = std::min(n0.norm(), n1.norm()) < 0.1 * (p(a) - p(b)).squaredNorm();
+            if (!sliver && n0.dot(n1) < 0.7 * n0.norm() * n1.norm()) return;  // never across a crease
+            const Vec3 n = (n0 + n1).normalized();
             if (m0.dot(n) < 0.08 * longest || m1.dot(n) < 0.08 * longest) return;
             tri(left) = Triangle(a, d, c);
             tri(right) = Triangle(d, b, c);
@@ -357,7 +387,7 @@ void taubin_smooth(TriMesh& mesh, int steps, double lambda, double mu) {
     }
 }
 
-TriMesh decimate(const TriMesh& mesh, std::size_t triangles) {
+TriMesh decimate(const TriMesh& mesh, std::size_t triangles, double error) {
     if (mesh.triangles.size() <= triangles) return mesh;
     std::vector<float> points;
     for (const Vec3& p : mesh.vertices) {
@@ -370,7 +400,7 @@ TriMesh decimate(const TriMesh& mesh, std::size_t triangles) {
     std::vector<unsigned> kept(indices.size());
     const std::size_t count =
         meshopt_simplify(kept.data(), indices.data(), indices.size(), points.data(), mesh.vertices.size(),
-                         3 * sizeof(float), 3 * triangles, 1e-2F, 0, nullptr);
+                         3 * sizeof(float), 3 * triangles, static_cast<float>(error), 0, nullptr);
     TriMesh out;
     std::vector<Index> place(mesh.vertices.size(), -1);
     for (std::size_t i = 0; i + 2 < count; i += 3) {

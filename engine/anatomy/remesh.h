@@ -21,9 +21,9 @@ TriMesh remesh(const TriMesh& mesh, const RemeshGoal& goal, const Workers& worke
 /// Taubin's smoothing [taubin1995]: `steps` times lambda, then mu, with uniform weights.
 void taubin_smooth(TriMesh& mesh, int steps, double lambda, double mu);
 
-/// Quadric edge collapse by meshoptimizer to about `triangles`; gives the mesh back unchanged where the result would
-/// not be sound.
-TriMesh decimate(const TriMesh& mesh, std::size_t triangles);
+/// Quadric edge collapse by meshoptimizer to about `triangles`, or until the error is that share of the mesh's size;
+/// gives the mesh back unchanged where the result would not be sound.
+TriMesh decimate(const TriMesh& mesh, std::size_t triangles, double error = 0.01);
 
 /// Every triangle cut into four (edges' midpoints).
 TriMesh subdivide(const TriMesh& mesh);
