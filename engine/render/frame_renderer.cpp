@@ -37,7 +37,7 @@ struct FrameRenderer::Impl {
     Image8 part;
 };
 
-FrameRenderer::FrameRenderer(std::unique_ptr<GlTarget> target, Workers workers)
+FrameRenderer::FrameRenderer(std::unique_ptr<GlTarget> target, const Workers& workers)
     : impl_(std::make_unique<Impl>(std::move(target), workers)) {}
 FrameRenderer::~FrameRenderer() = default;
 

@@ -28,7 +28,7 @@ FrameLayout layout_of(const FrameDescription& frame);
 class FrameRenderer {
 public:
     /// Throws UserError where no off-screen GL can be had.
-    explicit FrameRenderer(std::unique_ptr<GlTarget> target, Workers workers = Workers());
+    explicit FrameRenderer(std::unique_ptr<GlTarget> target, const Workers& workers = Workers());
     ~FrameRenderer();
 
     /// Makes out a picture of frame.width x frame.height (at least 64 x 64, at most 8192; else UserError).

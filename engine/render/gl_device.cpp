@@ -94,9 +94,10 @@ GlMesh::GlMesh(GlDevicePtr device, std::vector<int> attribute_sizes) : device_(s
     std::uintptr_t offset = 0;
     for (std::size_t i = 0; i < attribute_sizes.size(); ++i) {
         gl.EnableVertexAttribArray(static_cast<GLuint>(i));
-        gl.VertexAttribPointer(static_cast<GLuint>(i), attribute_sizes[i], GL_FLOAT, GL_FALSE,
-                               static_cast<GLsizei>(static_cast<std::size_t>(stride) * sizeof(float)),
-                               reinterpret_cast<const void*>(offset));
+        gl.VertexAttribPointer(
+            static_cast<GLuint>(i), attribute_sizes[i], GL_FLOAT, GL_FALSE,
+            static_cast<GLsizei>(static_cast<std::size_t>(stride) * sizeof(float)),
+            reinterpret_cast<const void*>(offset));  // NOLINT(performance-no-int-to-ptr): GL's offsets
         offset += static_cast<std::uintptr_t>(attribute_sizes[i]) * sizeof(float);
     }
 }
@@ -133,7 +134,7 @@ void GlMesh::draw(std::size_t first, std::size_t count) const {
     const GlTable& gl = device_->gl();
     gl.BindVertexArray(array_);
     gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT,
-                    reinterpret_cast<const void*>(first * sizeof(GLuint)));
+                    reinterpret_cast<const void*>(first * sizeof(GLuint)));  // NOLINT(performance-no-int-to-ptr)
 }
 
 GlFramebuffer::GlFramebuffer(GlDevicePtr device, int width, int height, const std::vector<GLenum>& formats, bool depth)

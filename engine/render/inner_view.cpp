@@ -17,7 +17,7 @@ namespace cathlab {
 namespace {
 
 constexpr double near_mm = 0.15, far_mm = 400.0;  // the lens, and where no light comes back
-constexpr int tube_sides = 14;
+constexpr std::size_t tube_sides = 14;
 constexpr std::size_t floats_per_vertex = 13;
 
 // Perspective with z forward; row 0 of the picture is y = -height, so GL's up is our down.
@@ -72,7 +72,7 @@ void add_device(const FrameDevice& device, const Pose& camera, Batch& out) {
         const Vec3 v = axis.normalized().cross(u);
         std::array<GLuint, 2 * tube_sides> ring{};
         for (std::size_t s = 0; s < tube_sides; ++s) {
-            const double angle = 2 * units::pi * static_cast<double>(s) / tube_sides;
+            const double angle = 2 * units::pi * static_cast<double>(s) / static_cast<double>(tube_sides);
             const Vec3 out_normal = std::cos(angle) * u + std::sin(angle) * v;
             ring[2 * s] = out.add(a + r * out_normal, out_normal, device.color, 0.9, Vec3::Zero());
             ring[2 * s + 1] = out.add(b + r * out_normal, out_normal, device.color, 0.9, Vec3::Zero());

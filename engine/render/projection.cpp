@@ -46,7 +46,7 @@ std::array<float, 16> Projection::clip_matrix() const {
     const Vec3 row_y = down_ * (2 * sid_ / mm_h_) - normal_ * (2 * center_.dot(down_) / mm_h_);
     std::array<float, 16> m{};
     for (int c = 0; c < 3; ++c) {
-        const auto column = static_cast<std::size_t>(4 * c);
+        const std::size_t column = std::size_t{4} * static_cast<std::size_t>(c);
         m[column] = static_cast<float>(row_x[c]);
         m[column + 1] = static_cast<float>(row_y[c]);
         m[column + 3] = static_cast<float>(normal_[c]);
