@@ -40,29 +40,32 @@ Foot nearest_foot(const CatheterBore& bore, const Vec3& p, double arc) {
 
 }  // namespace
 
-bool inside_bore(const CatheterBore& bore, double arc_of_sample) {
-    return bore.arc.size() >= 2 && arc_of_sample >= 0.0 && arc_of_sample <= bore.arc.back();
+bool inside_bore(const CatheterBore& bore, double arc_from_mouth) {
+    return bore.arc.size() >= 2 && arc_from_mouth >= 0.0 && arc_from_mouth <= bore.arc.back();
 }
 
-void add_bore_rows(const CatheterBore& bore, std::span<const RodSample> samples, std::span<const double> arc_of_sample,
-                   double compliance, std::vector<ChainRow>& rows) {
-    CATHLAB_CHECK(samples.size() == arc_of_sample.size(), "one arc length a sample");
+void add_bore_rows(const CatheterBore& bore, std::span<const RodSample> samples, std::span<const double> arc_from_mouth,
+                   double spacing_mm, double compliance, std::vector<ChainRow>& rows) {
+    CATHLAB_CHECK(samples.size() == arc_from_mouth.size(), "one arc length a sample");
     CATHLAB_CHECK(bore.points.size() == bore.arc.size(), "one arc length a point of the bore");
+    double last = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (!inside_bore(bore, arc_of_sample[i])) continue;
-        const Foot foot = nearest_foot(bore, samples[i].position, arc_of_sample[i]);
-        Vec3 away = samples[i].position - foot.point;
-        away -= away.dot(foot.tangent) * foot.tangent;
-        const double offset = std::sqrt(away.squaredNorm());
-        if (offset < 0.5 * bore.clearance_mm || offset < 1e-9) continue;  // on the axis there is nothing to push back
-        ChainRow row;
-        row.link = samples[i].link;
-        row.arm = samples[i].arm;
-        row.normal = -away / offset;
-        row.gap = bore.clearance_mm - offset;
-        row.compliance = compliance;
-        row.friction = bore.friction;
-        rows.push_back(row);
+        if (!inside_bore(bore, arc_from_mouth[i]) || std::fabs(last - arc_from_mouth[i]) < spacing_mm) continue;
+        last = arc_from_mouth[i];
+        const Foot foot = nearest_foot(bore, samples[i].position, arc_from_mouth[i]);
+        const Vec3 offset = samples[i].position - foot.point;
+        const Vec3 seed = std::fabs(foot.tangent.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY();
+        const Vec3 across = foot.tangent.cross(seed).normalized();
+        for (const Vec3& normal : {across, Vec3(foot.tangent.cross(across))}) {
+            ChainRow row;
+            row.link = samples[i].link;
+            row.arm = samples[i].arm;
+            row.normal = normal;
+            row.gap = offset.dot(normal);
+            row.compliance = compliance;
+            row.bilateral = true;
+            rows.push_back(row);
+        }
     }
 }
 

@@ -120,8 +120,7 @@ double move_catheter(Parts& p, const Input& input, double h) {
 CatheterBore catheter_bore(const Parts& p) {
     if (!p.catheter || !p.wire || p.catheter->inner_diameter_mm <= 0.0) return {};
     const CatheterShape& shape = p.catheter_route->shape;
-    const double wire_radius = p.wire->link_radius(p.wire->link_count() - 1);
-    return {shape.points, shape.arc, std::max(0.0, 0.5 * p.catheter->inner_diameter_mm - wire_radius), 0.05};
+    return {shape.points, shape.arc};
 }
 
 void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceSamples& samples) {
