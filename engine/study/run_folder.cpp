@@ -1,8 +1,11 @@
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
+#include "core/hash.h"
+#include "record/manifest.h"
 #include "study/run_index.h"
 
 namespace cathlab {
@@ -11,10 +14,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-Json read_json(const fs::path& file) {
+std::string read_text(const fs::path& file) {
     std::ifstream in(file);
     if (!in) throw UserError(file.string() + ": cannot be read");
-    Json out = Json::parse(in, nullptr, false);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+Json read_json(const fs::path& file) {
+    Json out = Json::parse(read_text(file), nullptr, false);
     if (out.is_discarded() || !out.is_object()) throw UserError(file.string() + ": is not a JSON object");
     return out;
 }
@@ -44,19 +51,22 @@ void check_pseudonym(const std::string& text) {
 RunEntry read_run_folder(const std::string& root, const std::string& folder) {
     const fs::path path = fs::path(root) / folder;
     const fs::path manifest_file = path / "manifest.json";
-    const Json manifest = read_json(manifest_file);
-    const auto text = [&](const char* key) { return value_or<std::string>(manifest, manifest_file, key, ""); };
+    const RunManifest manifest = parse_manifest(read_text(manifest_file), manifest_file.string());
     RunEntry entry;
     entry.folder = fs::path(folder).lexically_normal().generic_string();
-    entry.participant = text("participant");
-    entry.group = text("group");
-    entry.task = text("task");
-    entry.trial = value_or(manifest, manifest_file, "trial", 0);
-    entry.scene = text("scene");
-    entry.scene_hash = text("scene_hash");
-    entry.version = text("version");
-    entry.complete = value_or(manifest, manifest_file, "complete", true);
-    if (!entry.participant.empty()) check_pseudonym(entry.participant);
+    entry.scene = manifest.scene;
+    entry.scene_hash = hash_text(manifest.scene_hash);
+    entry.version = manifest.version;
+    entry.complete = manifest.complete;
+    const fs::path trial_file = path / "trial.json";
+    if (fs::exists(trial_file)) {
+        const Json trial = read_json(trial_file);
+        entry.participant = value_or<std::string>(trial, trial_file, "participant", "");
+        entry.group = value_or<std::string>(trial, trial_file, "group", "");
+        entry.task = value_or<std::string>(trial, trial_file, "task", "");
+        entry.trial = value_or(trial, trial_file, "trial", 0);
+        if (!entry.participant.empty()) check_pseudonym(entry.participant);
+    }
     const fs::path metrics_file = path / "metrics.json";
     if (!fs::exists(metrics_file)) {
         if (entry.complete) throw UserError(metrics_file.string() + ": is missing");

@@ -22,8 +22,9 @@ struct RunEntry {
     std::map<std::string, double> metrics;  ///< name -> value, names of task's metric table
 };
 
-/// Reads FOLDER/manifest.json and FOLDER/metrics.json (which an incomplete run may lack).  Throws UserError that names
-/// the file and what is wrong with it.
+/// Reads FOLDER/manifest.json, FOLDER/trial.json where there is one ({"participant", "group", "task", "trial"}: who did
+/// what), and FOLDER/metrics.json (which an incomplete run may lack).  Throws UserError that names the file and what is
+/// wrong with it.
 RunEntry read_run_folder(const std::string& root, const std::string& folder);
 
 /// Throws UserError unless the text can be a pseudonym; a name with a blank or an '@' is refused.

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/errors.h"
+#include "record/manifest.h"
 
 using namespace cathlab;
 namespace fs = std::filesystem;
@@ -41,6 +42,16 @@ RunEntry run(const std::string& folder, const std::string& participant, int tria
     e.trial = trial;
     e.metrics = {{"play_time_s", 61.25}, {"contacts", 3.0}};
     return e;
+}
+
+std::string manifest(bool complete) {
+    RunManifest out;
+    out.version = "0.1.0";
+    out.scene = "scenes/tasks/a.toml";
+    out.scene_hash = 0xFF;
+    out.dt_s = 0.02;
+    out.complete = complete;
+    return manifest_json(out);
 }
 
 std::string message(const std::function<void()>& action) {
@@ -96,23 +107,28 @@ TEST_F(Index, TakesPseudonymsOnly) {
 }
 
 TEST_F(Index, IsRebuiltFromTheFoldersAndSaysWhatItLeftOut) {
-    write("runs/a/manifest.json", R"({"participant": "P01", "task": "A", "trial": 1, "version": "0.1.0"})");
+    write("runs/a/manifest.json", manifest(true));
+    write("runs/a/trial.json", R"({"participant": "P01", "task": "A", "trial": 1})");
     write("runs/a/metrics.json", R"({"play_time_s": 70.5, "note": "text is no metric"})");
-    write("runs/cut/manifest.json", R"({"participant": "P01", "task": "A", "trial": 2, "complete": false})");
+    write("runs/cut/manifest.json", manifest(false));
+    write("runs/cut/trial.json", R"({"participant": "P01", "task": "A", "trial": 2})");
     write("runs/broken/manifest.json", "{\"participant\": ");
-    write("runs/lost/manifest.json", R"({"participant": "P02", "task": "A", "trial": 1})");
-    write("runs/typed/manifest.json", R"({"participant": 7})");
+    write("runs/lost/manifest.json", manifest(true));
+    write("runs/typed/manifest.json", manifest(true));
+    write("runs/typed/trial.json", R"({"participant": 7})");
     RunIndex index(file(), root());
     index.add(run("runs/gone", "P09", 1));
     const auto rebuilt = index.rebuild();
-    EXPECT_EQ(rebuilt.added, 2);
+    EXPECT_EQ(rebuilt.added, 2) << (rebuilt.left_out.empty() ? "" : rebuilt.left_out[0]);
     ASSERT_EQ(rebuilt.left_out.size(), 3U);
-    EXPECT_NE(rebuilt.left_out[0].find("broken/manifest.json: is not a JSON object"), std::string::npos);
+    EXPECT_NE(rebuilt.left_out[0].find("broken/manifest.json"), std::string::npos);
     EXPECT_NE(rebuilt.left_out[1].find("lost/metrics.json: is missing"), std::string::npos);
     EXPECT_NE(rebuilt.left_out[2].find("participant: has the wrong type: 7"), std::string::npos);
     const auto all = index.list();
     ASSERT_EQ(all.size(), 2U);
     EXPECT_EQ(all[0].folder, "runs/a");
+    EXPECT_EQ(all[0].participant, "P01");
+    EXPECT_EQ(all[0].scene_hash, "00000000000000ff");
     EXPECT_EQ(all[0].metrics, (std::map<std::string, double>{{"play_time_s", 70.5}}));
     EXPECT_FALSE(all[1].complete);
 }
