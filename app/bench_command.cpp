@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "film.h"
 #include "progress.h"
+#include "run_options.h"
 #include "scene/load_scene.h"
 #include "scene/script.h"
 #include "session.h"
@@ -95,6 +96,7 @@ void print(const std::vector<Row>& rows, const BenchOptions& options, const Scen
 }
 
 void bench(const BenchOptions& options, const AppContext& context) {
+    require_finite("--seconds", options.seconds);
     const SceneSpec scene = load_scene(find_scene(options.scene, context.data_root), {}, context.data_root);
     const Script script = scene.script.empty() ? Script() : Script::load(scene.script);
     Session session(scene, scene.seed, options.threads, context);

@@ -71,12 +71,8 @@ public:
           script_(script),
           folder_(options.out),
           steps_(step_count(options, session)),
-          writer_(open_folder(options, session, context), manifest(options, session, context), session.entity_names()) {
-        if (options.film.video == "none") return;
-        video_ = options.film.video.empty() ? folder_ + "/fluoro.mp4" : options.film.video;
-        film_ = std::make_unique<Film>(session.scene(), film_options(options.film, session.scene(), video_),
-                                       options.threads);
-    }
+          film_(open_film(options, session)),
+          writer_(folder_, manifest(options, session, context), session.entity_names()) {}
 
     /// True if the run reached its end, false if it was stopped.  After an exception the folder is closed too.
     bool run() {
@@ -102,9 +98,19 @@ private:
         const double seconds = options.seconds > 0.0 ? options.seconds : session.scene().duration_s;
         return std::max<std::int64_t>(1, std::llround(seconds / session.dt()));
     }
-    static std::string open_folder(const RunOptions& options, const Session&, const AppContext&) {
-        prepare_run_folder(options.out, options.force);
-        return options.out;
+    // The film comes before the logs: where it cannot be made, no half run is left behind.
+    std::unique_ptr<Film> open_film(const RunOptions& options, const Session& session) {
+        prepare_run_folder(folder_, options.force);
+        if (options.film.video == "none") return nullptr;
+        video_ = options.film.video.empty() ? folder_ + "/fluoro.mp4" : options.film.video;
+        try {
+            return std::make_unique<Film>(session.scene(), film_options(options.film, session.scene(), video_),
+                                          options.threads);
+        } catch (...) {
+            std::error_code not_empty;
+            std::filesystem::remove(folder_, not_empty);
+            throw;
+        }
     }
     static RunManifest manifest(const RunOptions& options, Session& session, const AppContext& context) {
         RunManifest m;
@@ -170,9 +176,9 @@ private:
     std::string folder_;
     std::int64_t steps_ = 0;
     std::int64_t done_ = 0;
-    RunWriter writer_;
     std::string video_;
     std::unique_ptr<Film> film_;
+    RunWriter writer_;
     MetricsAccumulator metrics_;
     Image8 poster_;
     Clock::time_point begin_ = Clock::now();
@@ -181,6 +187,7 @@ private:
 };
 
 void run(RunOptions options, AppContext& context) {
+    require_finite("--seconds", options.seconds);
     const SceneSpec scene =
         load_scene(find_scene(options.scene, context.data_root), options.overlays, context.data_root);
     if (options.script.empty()) options.script = scene.script;

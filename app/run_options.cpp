@@ -1,6 +1,7 @@
 #include "run_options.h"
 
 #include <charconv>
+#include <cmath>
 
 #include "core/errors.h"
 
@@ -14,6 +15,10 @@ bool parse_int(std::string_view text, int& out) {
 
 }  // namespace
 
+void require_finite(const char* option, double value) {
+    if (!std::isfinite(value)) throw UserError(std::string(option) + ": a finite number is wanted", true);
+}
+
 FilmOptions film_options(const FilmArguments& arguments, const SceneSpec& scene, const std::string& path) {
     FilmOptions out{path, scene.video.width, scene.video.height, scene.video.fps};
     if (!arguments.size.empty()) {
@@ -25,6 +30,7 @@ FilmOptions film_options(const FilmArguments& arguments, const SceneSpec& scene,
             out.width % 2 != 0 || out.height % 2 != 0)
             throw UserError("--size '" + arguments.size + "': two even numbers are wanted, 64x64 to 7680x4320", true);
     }
+    require_finite("--fps", arguments.fps);
     if (arguments.fps > 0.0) out.fps = arguments.fps;
     return out;
 }

@@ -17,4 +17,7 @@ struct FilmArguments {
 /// path = the film's file.  Throws UserError (wrong use) for a size that is not WxH, odd, or out of range.
 FilmOptions film_options(const FilmArguments& arguments, const SceneSpec& scene, const std::string& path);
 
+/// Throws UserError (wrong use) for NaN and infinities, which CLI11's ranges let pass.
+void require_finite(const char* option, double value);
+
 }  // namespace cathlab

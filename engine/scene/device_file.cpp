@@ -1,5 +1,9 @@
 #include "scene/device_file.h"
 
+#include <algorithm>
+
+#include "beam/materials.h"
+
 namespace cathlab {
 namespace {
 
@@ -109,6 +113,15 @@ TomlNode load_kind(const std::string& path, const std::string& wanted) {
     return file;
 }
 
+// What the X-ray image cannot draw must not be found out in the middle of a run.
+void check_material(const std::string& path, const std::string& name) {
+    std::vector<std::string> known;
+    for (const Material& material : material_table()) known.emplace_back(material.name);
+    if (std::find(known.begin(), known.end(), name) == known.end())
+        throw UserError({path, 0, "material"},
+                        "no material '" + name + "'" + did_you_mean(name, known) + " There is: " + comma_list(known));
+}
+
 }  // namespace
 
 const Table<WireFile>& wire_table() {
@@ -132,12 +145,15 @@ WireSpec load_wire(const std::string& path) {
     } catch (const UserError& error) {
         throw UserError({path, 0, ""}, error.what());
     }
+    for (const WireSection& section : spec.sections) check_material(path, section.material);
     return spec;
 }
 
 CatheterSpec load_catheter(const std::string& path) {
     CatheterSpec spec = read_table(load_kind(path, "catheter"), catheter_table()).spec;
     validate(spec, {path, 0, ""});
+    check_material(path, spec.material);
+    check_material(path, spec.tip_material);
     return spec;
 }
 

@@ -21,7 +21,7 @@ bending_stiffness_n_mm2 = 1850
 torsion_stiffness_n_mm2 = 1400
 axial_stiffness_n = 37000
 density_kg_m3 = 7000
-material = "stainless_316l"
+material = "stainless_steel"
 )";
 
 class LoadScene : public testing::Test {
@@ -157,6 +157,12 @@ TEST_F(LoadScene, DeviceFilesFillTheSpecsOfTheirRooms) {
               }).find("not valid TOML"),
               std::string::npos);
     EXPECT_THROW(load_wire(folder.write("e.toml", "")), UserError);
+    std::string no_such_material = wire_file;
+    no_such_material.replace(no_such_material.find("stainless_steel"), 15, "stainles_steel");
+    EXPECT_NE(error_sentence([&] {
+                  load_wire(folder.write("m.toml", no_such_material));
+              }).find("did you mean 'stainless_steel'?"),
+              std::string::npos);
 }
 
 TEST(Devices, EveryDeviceOfTheProjectIsValid) {

@@ -1,0 +1,137 @@
+// The program as a user meets it: command lines, exit codes, one sentence for each fault, nothing half written.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "scene/temporary_folder.h"
+
+namespace cathlab {
+namespace {
+
+struct Outcome {
+    int code = -1;
+    std::string text;  // stdout and stderr
+};
+
+Outcome call(const std::string& arguments, const std::string& environment = "") {
+    Outcome out;
+    const std::string command = environment + " " + CATHLAB_PROGRAM + " " + arguments + " 2>&1";
+    FILE* pipe = ::popen(command.c_str(), "r");
+    std::array<char, 4096> buffer{};
+    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) out.text.append(buffer.data(), n);
+    const int status = ::pclose(pipe);
+    out.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return out;
+}
+
+/// One line, ended, that begins with the program's name.
+testing::AssertionResult one_sentence(const Outcome& outcome) {
+    const auto lines = std::count(outcome.text.begin(), outcome.text.end(), '\n');
+    if (lines == 1 && outcome.text.rfind("cathlab: ", 0) == 0) return testing::AssertionSuccess();
+    return testing::AssertionFailure() << outcome.text;
+}
+
+TEST(Program, HelpAndVersionAreNoFaults) {
+    EXPECT_EQ(call("--help").code, 0);
+    EXPECT_EQ(call("run --help").code, 0);
+    const Outcome version = call("--version");
+    EXPECT_EQ(version.code, 0);
+    EXPECT_NE(version.text.find("cathlab "), std::string::npos);
+}
+
+TEST(Program, WrongUseEndsWithTwo) {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("a.toml", "schema = 1\n");
+    EXPECT_EQ(call("").code, 2);
+    EXPECT_EQ(call("ruin").code, 2);
+    EXPECT_EQ(call("run").code, 2);
+    EXPECT_EQ(call("run " + scene).code, 2);
+    EXPECT_EQ(call("run " + scene + " --out x --threads 0").code, 2);
+    EXPECT_EQ(call("run " + scene + " --out x --seconds nan").code, 2);
+    EXPECT_EQ(call("run " + scene + " --out x --seconds -3").code, 2);
+    EXPECT_EQ(call("run " + scene + " --out x --seed -1").code, 2);
+    EXPECT_EQ(call("list nonsense").code, 2);
+    EXPECT_EQ(call("list channels --log-level loud").code, 2);
+    EXPECT_EQ(call("replay").code, 2);
+    EXPECT_EQ(call("list channels", "CATHLAB_DATA_DIR=/nonexistent").code, 2);
+}
+
+TEST(Program, ListsKnowEveryKind) {
+    for (const char* what :
+         {"scenes", "devices", "effects", "channels", "materials", "anatomies", "actions", "metrics"}) {
+        EXPECT_EQ(call(std::string("list ") + what).code, 0) << what;
+        const Outcome json = call(std::string("list ") + what + " --json");
+        EXPECT_EQ(json.code, 0) << what;
+        EXPECT_EQ(json.text.front(), '[') << what;
+    }
+    EXPECT_NE(call("list channels").text.find("wire_force_mn"), std::string::npos);
+    EXPECT_NE(call("list effects").text.find("respiration"), std::string::npos);
+    EXPECT_EQ(call("list effects").text.find("test_force"), std::string::npos);
+    EXPECT_EQ(call("list schema").text.front(), '{');
+}
+
+TEST(Program, ABadSceneIsOneSentenceAndLeavesNothing) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path("run");
+    const std::string good = "schema = 1\n[anatomy]\nfile = 'adult'\n";
+    const std::vector<std::pair<std::string, std::string>> scenes{
+        {"", "schema: is missing"},
+        {"schema = 1\n[anatomy\n", "a.toml:2: is not valid TOML"},
+        {std::string("\0\1\2\3", 4), "not a text file"},
+        {std::string((16U << 20U) + 10, '#'), "larger than the 16 MB"},
+        {good + "[wall]\nfriction = nan\n", "a.toml:5: [wall] friction: found nan"},
+        {good + "[wall]\nfriction = inf\n", "found inf"},
+        {good + "[wall]\nfrition = 0.1\n", "did you mean 'friction'?"},
+        {good + "[step]\nsubsteps = 'many'\n", "a whole number from 1 to 100"},
+        {"schema = 1\n[anatomy]\nmesh = 'none.obj'\n", "no such file 'none.obj'"},
+        {"schema = 1\n[anatomy]\nfile = 'adlt'\n", "did you mean 'adult'?"},
+    };
+    for (const auto& [text, sentence] : scenes) {
+        const Outcome run = call("run " + folder.write("a.toml", text) + " --video none --out " + out);
+        EXPECT_EQ(run.code, 1) << sentence;
+        EXPECT_TRUE(one_sentence(run)) << sentence;
+        EXPECT_NE(run.text.find(sentence), std::string::npos) << run.text;
+        EXPECT_FALSE(std::filesystem::exists(out));
+    }
+    const Outcome missing = call("run nowhere.toml --out " + out);
+    EXPECT_EQ(missing.code, 1);
+    EXPECT_TRUE(one_sentence(missing));
+    EXPECT_TRUE(one_sentence(call("check " + folder.path())));
+}
+
+TEST(Program, ABadScriptSizeOrFolderIsToldBeforeTheWorldIsBuilt) {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("a.toml", "schema = 1\n[anatomy]\nfile = 'adult'\n");
+    const std::string out = folder.path("run");
+    const Outcome script = call("run " + scene + " --out " + out + " --script " + folder.write("s.csv", "t,a,v\n"));
+    EXPECT_EQ(script.code, 1);
+    EXPECT_TRUE(one_sentence(script));
+    for (const char* size : {"3x3", "512", "511x512", "axb", "99999x99999", "512x-2"}) {
+        const Outcome wrong = call("run " + scene + " --out " + out + " --size " + size);
+        EXPECT_EQ(wrong.code, 2) << size;
+        EXPECT_TRUE(one_sentence(wrong)) << size;
+    }
+    const std::string file = folder.write("file", "x");
+    EXPECT_TRUE(one_sentence(call("run " + scene + " --out " + file)));
+    EXPECT_TRUE(one_sentence(call("run " + scene + " --out " + file + "/below")));
+    folder.write("thesis/text.txt", "precious");
+    const Outcome foreign = call("run " + scene + " --force --out " + folder.path("thesis"));
+    EXPECT_EQ(foreign.code, 1);
+    EXPECT_TRUE(one_sentence(foreign));
+    EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST(Program, WhatIsNoRunFolderCannotBeReplayed) {
+    const TemporaryFolder folder;
+    const Outcome none = call("replay " + folder.path() + " --verify");
+    EXPECT_EQ(none.code, 1);
+    EXPECT_TRUE(one_sentence(none));
+    folder.write("manifest.json", "{\"schema\": 1, \"version\":");
+    EXPECT_TRUE(one_sentence(call("replay " + folder.path() + " --verify")));
+}
+
+}  // namespace
+}  // namespace cathlab
