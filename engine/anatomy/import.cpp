@@ -258,11 +258,14 @@ AnatomyModel import_anatomy(const ImportedAnatomySpec& spec, const Workers& work
     goal.size = [&](const Vec3& p) { return tree.tree->size(p, fine_law); };
     goal.project = [&](const Vec3& p, double edge) -> Vec3 {
         Vec3 q = p;
+        const FieldSample near = tree.tree->sample(p);
+        // as in the parametric tree: corners of flat triangles stand that far outside a round lumen of equal volume
+        const double level = edge * edge / (16.0 * std::max(near.radius, edge));
         for (int k = 0; k < 2; ++k) {
             const Vec3 g = wall.gradient(q);
             const double slope = g.squaredNorm();
             if (slope < 0.05) break;  // between two walls
-            q -= std::clamp(wall.value(q) / slope, -0.5 * edge, 0.5 * edge) * g;
+            q -= std::clamp((wall.value(q) - level) / slope, -0.5 * edge, 0.5 * edge) * g;
         }
         return q;
     };

@@ -194,13 +194,13 @@ std::vector<ContextSolid> make_torso(const Workers& workers) {
     for (const double side : {-1.0, 1.0})
         out.push_back(solid(
             side < 0.0 ? "lung_right" : "lung_left", "lung", "body", [side](const Vec3& p) { return lung(p, side); },
-            Vec3(-180.0, -90.0, -230.0), Vec3(180.0, 160.0, 180.0), 5.0, 700, workers));
+            Vec3(-180.0, -90.0, -230.0), Vec3(180.0, 160.0, 180.0), 5.0, 600, workers));
     const std::vector<Vertebra> spine = vertebrae();
     for (const Vertebra& v : spine) {
         const double y = spine_y(v.z);
         out.push_back(solid(
             "vertebra_" + v.name, "cortical_bone", "body", [&v](const Vec3& p) { return vertebra(p, v); },
-            Vec3(-50.0, y - 40.0, v.z - 40.0), Vec3(50.0, y + 65.0, v.z + 40.0), 2.0, 170, workers));
+            Vec3(-50.0, y - 40.0, v.z - 40.0), Vec3(50.0, y + 65.0, v.z + 40.0), 2.0, 150, workers));
     }
     // Ribs 1 to 10 leave beside their vertebra, run round the lungs and fall to the front.
     for (int rib = 1; rib <= 10; ++rib) {
