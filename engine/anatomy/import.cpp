@@ -15,6 +15,7 @@ namespace {
 
 constexpr double equilateral = 0.4330127018922193;  // area of a triangle of edge 1
 constexpr double fixed_half_length = 5.0;
+constexpr int smoothing_steps = 10;     // of the distance grid's surface [li2025]
 constexpr double longest_piece = 25.0;  // mm of vessel in one region
 
 /// The skeleton's chains as vessels (for radii and sizes near the wall) and as a graph.
@@ -182,6 +183,20 @@ double estimate(const TriMesh& mesh, const std::function<double(const Vec3&)>& s
     return sum;
 }
 
+/// A start for remeshing: a level of the distance grid near the wall, whose triangles are even and which has none of
+/// the mesh's own folds through itself.  The first level with the mesh's handles is taken (walls in touch join or part
+/// with a little more or less room); where none has them, the mesh itself, cut finer.
+TriMesh even_surface(const TriMesh& mesh, const MeshQuality& wanted, const DistanceGrid& wall, double triangles,
+                     const Workers& workers) {
+    for (const double level : {0.0, -0.15, 0.15, -0.3, 0.3, -0.45}) {
+        TriMesh even = largest_part(wall.surface(level, workers));
+        if (!find_faults(even).sound() || measure_quality(even).genus != wanted.genus) continue;
+        taubin_smooth(even, smoothing_steps, 0.5, -0.53);
+        return decimate(even, static_cast<std::size_t>(1.3 * triangles));
+    }
+    return subdivide(mesh);
+}
+
 void attribute(const TriMesh& mesh, const ImportedTree& tree, std::vector<Index>& region, std::vector<double>& radius) {
     for (const Vec3& p : mesh.vertices) {
         const FieldSample s = tree.tree->sample(p);
@@ -270,7 +285,7 @@ AnatomyModel import_anatomy(const ImportedAnatomySpec& spec, const Workers& work
         return q;
     };
     goal.rounds = 4;
-    model.fine = remesh(subdivide(mesh), goal, workers);
+    model.fine = remesh(even_surface(mesh, quality, wall, estimate(mesh, goal.size), workers), goal, workers);
     tell(0.8, "lumen surface");
     SizingLaw law;
     law.edges_round = 1.2 * spec.edges_round;

@@ -365,6 +365,21 @@ std::vector<std::vector<Index>> neighbours_of(const TriMesh& mesh) {
     return out;  // in a closed surface every neighbour comes once, by the edge that leaves
 }
 
+/// Which vertices hang together.
+class Parts {
+public:
+    explicit Parts(std::size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), 0); }
+    Index of(Index v) {
+        while (at(v) != v) v = at(v) = at(at(v));
+        return v;
+    }
+    void join(Index a, Index b) { at(of(a)) = of(b); }
+
+private:
+    std::vector<Index> root_;
+    Index& at(Index v) { return root_[static_cast<std::size_t>(v)]; }
+};
+
 }  // namespace
 
 TriMesh remesh(const TriMesh& mesh, const RemeshGoal& goal, const Workers& workers) {
@@ -445,18 +460,37 @@ TriMesh subdivide(const TriMesh& mesh) {
     return out;
 }
 
+TriMesh largest_part(const TriMesh& mesh) {
+    Parts parts(mesh.vertices.size());
+    for (const Triangle& t : mesh.triangles) {
+        parts.join(t[0], t[1]);
+        parts.join(t[1], t[2]);
+    }
+    std::vector<std::size_t> count(mesh.vertices.size(), 0);
+    for (const Triangle& t : mesh.triangles) ++count[static_cast<std::size_t>(parts.of(t[0]))];
+    const auto best = static_cast<Index>(std::max_element(count.begin(), count.end()) - count.begin());
+    TriMesh out;
+    std::vector<Index> place(mesh.vertices.size(), -1);
+    for (const Triangle& t : mesh.triangles) {
+        if (parts.of(t[0]) != best) continue;
+        Triangle u;
+        for (int k = 0; k < 3; ++k) {
+            const auto v = static_cast<std::size_t>(t[k]);
+            if (place[v] < 0) {
+                place[v] = static_cast<Index>(out.vertices.size());
+                out.vertices.push_back(mesh.vertices[v]);
+            }
+            u[k] = place[v];
+        }
+        out.triangles.push_back(u);
+    }
+    return out;
+}
+
 MeshQuality measure_quality(const TriMesh& mesh) {
     MeshQuality q;
     std::size_t thin = 0;
-    std::vector<Index> root(mesh.vertices.size());
-    std::iota(root.begin(), root.end(), 0);
-    auto find = [&](Index v) {
-        while (root[static_cast<std::size_t>(v)] != v) {
-            root[static_cast<std::size_t>(v)] = root[static_cast<std::size_t>(root[static_cast<std::size_t>(v)])];
-            v = root[static_cast<std::size_t>(v)];
-        }
-        return v;
-    };
+    Parts parts(mesh.vertices.size());
     std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
     for (const Triangle& t : mesh.triangles) {
         double smallest = 180.0;
@@ -465,7 +499,7 @@ MeshQuality measure_quality(const TriMesh& mesh) {
             const Vec3 u = mesh.vertices[static_cast<std::size_t>(t[(k + 1) % 3])] - a;
             const Vec3 v = mesh.vertices[static_cast<std::size_t>(t[(k + 2) % 3])] - a;
             smallest = std::min(smallest, det::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / 3.14159265358979323846);
-            root[static_cast<std::size_t>(find(t[k]))] = find(t[(k + 1) % 3]);
+            parts.join(t[k], t[(k + 1) % 3]);
             used[static_cast<std::size_t>(t[k])] = 1;
         }
         q.smallest_angle_deg = std::min(q.smallest_angle_deg, smallest);
@@ -474,7 +508,7 @@ MeshQuality measure_quality(const TriMesh& mesh) {
     long vertices = 0;
     for (std::size_t v = 0; v < used.size(); ++v) {
         vertices += used[v];
-        if (used[v] != 0 && find(static_cast<Index>(v)) == static_cast<Index>(v)) ++q.components;
+        if (used[v] != 0 && parts.of(static_cast<Index>(v)) == static_cast<Index>(v)) ++q.components;
     }
     const long faces = static_cast<long>(mesh.triangles.size());
     const long euler = vertices - faces / 2;  // closed: E = 3 F / 2

@@ -28,6 +28,9 @@ TriMesh decimate(const TriMesh& mesh, std::size_t triangles, double error = 0.01
 /// Every triangle cut into four (edges' midpoints).
 TriMesh subdivide(const TriMesh& mesh);
 
+/// The connected part with the most triangles.
+TriMesh largest_part(const TriMesh& mesh);
+
 struct MeshQuality {
     double smallest_angle_deg = 180.0;
     double share_below_15_deg = 0.0;

@@ -58,11 +58,11 @@ TriMesh sorted(const TriMesh& mesh) {
     return out;
 }
 
-TriMesh mesh_of_grid(const openvdb::FloatGrid& grid, const Workers& workers) {
+TriMesh mesh_of_grid(const openvdb::FloatGrid& grid, double level, const Workers& workers) {
     std::vector<openvdb::Vec3s> points;
     std::vector<openvdb::Vec3I> triangles;
     std::vector<openvdb::Vec4I> quads;
-    in_arena(workers, [&] { openvdb::tools::volumeToMesh(grid, points, triangles, quads, 0.0, 0.0); });
+    in_arena(workers, [&] { openvdb::tools::volumeToMesh(grid, points, triangles, quads, level, 0.0); });
     TriMesh mesh;
     for (const openvdb::Vec3s& p : points) mesh.vertices.emplace_back(p.x(), p.y(), p.z());
     auto add = [&](unsigned a, unsigned b, unsigned c) {
@@ -139,7 +139,7 @@ TriMesh mesh_level_set(const ScalarField& field, const Vec3& low, const Vec3& hi
         if (!leaf->isEmpty()) grid->tree().addLeaf(leaf.release());
     }
     openvdb::tools::signedFloodFill(grid->tree(), false);
-    return mesh_of_grid(*grid, workers);
+    return mesh_of_grid(*grid, 0.0, workers);
 }
 
 struct DistanceGrid::Grid {
@@ -183,8 +183,8 @@ Vec3 DistanceGrid::gradient(const Vec3& p) const {
     return g;
 }
 
-TriMesh DistanceGrid::surface(const Workers& workers) const {
-    return mesh_of_grid(*grid_->grid, workers);
+TriMesh DistanceGrid::surface(double level_mm, const Workers& workers) const {
+    return mesh_of_grid(*grid_->grid, level_mm, workers);
 }
 
 }  // namespace cathlab

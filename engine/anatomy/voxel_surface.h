@@ -23,7 +23,8 @@ public:
     double value(const Vec3& p) const;  ///< trilinear; clamped to the bands
     Vec3 gradient(const Vec3& p) const;
     double voxel() const { return voxel_; }
-    TriMesh surface(const Workers& workers) const;
+    /// The surface at that distance from the wall (mm, negative inside, within the bands).
+    TriMesh surface(double level_mm, const Workers& workers) const;
 
 private:
     struct Grid;
