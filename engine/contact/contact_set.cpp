@@ -10,6 +10,9 @@
 namespace cathlab {
 namespace {
 
+// A row that is open wider than this does not care where exactly it looks.
+constexpr double near_mm = 0.1;
+
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
@@ -207,6 +210,8 @@ void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState&
                 wall.point_before += weight_[j] * particles_before[at(particle_[j])];
             }
             wall.point = at_wall.point;
+            wall.found = s.position - at_wall.point;
+            wall.separation = wall.found;
             ChainRow row;
             row.link = s.link;
             row.normal = k == 0 ? found[i].smooth : at_wall.inward_normal;
@@ -249,6 +254,7 @@ void ContactSet::refresh(std::span<const DeviceSample> samples_now, std::span<co
         Vec3 q = Vec3::Zero();
         for (std::size_t j = wall.begin; j < wall.end; ++j) q += weight_[j] * particles_now[at(particle_[j])];
         wall.point = q;
+        wall.separation = s.position - q;
         row.gap = row.normal.dot(s.position - q) - wall.offset;
         // Forces act where the surfaces meet, so friction also turns the device about its axis.
         row.arm = s.arm - wall.radius * row.normal;
@@ -256,6 +262,16 @@ void ContactSet::refresh(std::span<const DeviceSample> samples_now, std::span<co
                               wall.radius * s.rotation.cross(row.normal);
         row.slip = tangential(relative, row.normal);
     }
+}
+
+double ContactSet::staleness() const {
+    double worst = 0.0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+        if (rows_[r].multiplier <= 0.0 && rows_[r].gap > near_mm) continue;
+        const Vec3 shift = tangential(Vec3(wall_[r].separation - wall_[r].found), rows_[r].normal);
+        worst = std::max(worst, shift.squaredNorm());
+    }
+    return std::sqrt(worst);
 }
 
 std::span<ChainRow> ContactSet::chain_rows(Index device) {
@@ -266,14 +282,38 @@ std::span<ChainRow> ContactSet::chain_rows(Index device) {
     return std::span<ChainRow>(rows_).subspan(at(begin), at(end - begin));
 }
 
-void ContactSet::solve_kinematic() {
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-        if (!wall_[r].kinematic) continue;
-        ChainRow& row = rows_[r];
-        row.multiplier = std::max(0.0, row.multiplier - row.gap / row.compliance);
-        row.tangent_force = into_cone(tangential(row.tangent_force, row.normal) - row.slip / row.compliance,
-                                      row.friction * row.multiplier);
-    }
+void ContactSet::solve_kinematic(std::span<const DeviceSample> samples_now, std::span<Vec3> particles,
+                                 std::span<const double> particle_compliance, int sweeps) {
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+        for (std::size_t r = 0; r < rows_.size(); ++r) {
+            const WallRow& wall = wall_[r];
+            if (!wall.kinematic) continue;
+            ChainRow& row = rows_[r];
+            const DeviceSample& s = samples_now[at(wall.sample)];
+            Vec3 q = Vec3::Zero();
+            double compliance = 0.0;
+            for (std::size_t j = wall.begin; j < wall.end; ++j) {
+                q += weight_[j] * particles[at(particle_[j])];
+                compliance += weight_[j] * weight_[j] * particle_compliance[at(particle_[j])];
+            }
+            // A wall that is held yields like a spring of min_compliance: gap + alpha lambda = 0, whatever the sweeps.
+            const double alpha = std::max(0.0, settings_.min_compliance_mm_per_mn - compliance);
+            compliance += alpha;
+            const double gap = row.normal.dot(s.position - q) - wall.offset;
+            const Vec3 slip =
+                tangential(Vec3((s.position - sample_before_[at(wall.sample)]) - (q - wall.point_before)), row.normal);
+            const double multiplier = std::max(0.0, row.multiplier - (gap + alpha * row.multiplier) / compliance);
+            const Vec3 held = tangential(row.tangent_force, row.normal);
+            const Vec3 tangent = into_cone(held - (slip + alpha * held) / compliance, row.friction * multiplier);
+            const Vec3 change = (multiplier - row.multiplier) * row.normal + (tangent - row.tangent_force);
+            row.multiplier = multiplier;
+            row.tangent_force = tangent;
+            if (change.isZero(0.0)) continue;
+            for (std::size_t j = wall.begin; j < wall.end; ++j) {
+                const std::size_t p = at(particle_[j]);
+                particles[p] -= particle_compliance[p] * weight_[j] * change;
+            }
+        }
 }
 
 void ContactSet::apply_to_wall(std::span<Vec3> force) const {

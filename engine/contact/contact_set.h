@@ -88,11 +88,18 @@ public:
     /// are read) and the particles where they are now.  Normal, weights and compliance stay.
     void refresh(std::span<const DeviceSample> samples_now, std::span<const Vec3> particles_now);
 
+    /// How far, mm, device and wall have slid past each other since detect, at the worst row that is closed or nearly
+    /// so: its normal and its wall point were true for another place.  Where it is large, detect again.
+    double staleness() const;
+
     /// The rows of one device for the chain solve, contiguous, ascending from the tip; multipliers are in and out.
     std::span<ChainRow> chain_rows(Index device);
 
-    /// One pass over the rows of kinematic samples.
-    void solve_kinematic();
+    /// Sweeps over the rows of kinematic samples, each seeing what the ones before it did to the wall: particle j gives
+    /// way by c_j w_j (change of force), so no averaging by N_j is needed and a dense row of samples converges in a few
+    /// sweeps.  particles (mm) move along; the forces that moved them are the ones that apply_to_wall hands out.
+    void solve_kinematic(std::span<const DeviceSample> samples_now, std::span<Vec3> particles,
+                         std::span<const double> particle_compliance, int sweeps);
 
     /// Adds -w_j (lambda n + t) of every row to force (mN, one a particle), in the order of the rows.
     void apply_to_wall(std::span<Vec3> force) const;

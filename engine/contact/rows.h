@@ -34,6 +34,8 @@ struct WallRow {
     double offset = 0.0;               ///< gap = n . (p - q) - offset, mm
     Vec3 barycentric = Vec3::Zero();   ///< of the wall point in its triangle
     Vec3 point = Vec3::Zero();         ///< wall point q = sum w_j x_j at the last refresh, mm, world
+    Vec3 found = Vec3::Zero();         ///< p - q when the row was made
+    Vec3 separation = Vec3::Zero();    ///< p - q at the last refresh
     Vec3 point_before = Vec3::Zero();  ///< q at the beginning of the substep
     std::size_t begin = 0,
                 end = 0;  ///< its particles and weights in ContactSet::particles(), ::weights(): w_j = sum_k b_k w_kj

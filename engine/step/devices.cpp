@@ -49,11 +49,15 @@ Rail current_rail(const Parts& p) {
     return rail;
 }
 
-// Rows of the last substep, seen from where the catheter stands now.
+// Rows of the last substep, seen from where the catheter stands now.  The force limit is the whole catheter's: at the
+// limit no sample may go further into the wall.
 std::vector<WallLimit> wall_limits(const Parts& p, const CatheterShape& now) {
     std::vector<WallLimit> limits;
     const auto rows = p.contacts->rows();
     const auto wall = p.contacts->wall_rows();
+    double force = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (wall[i].device == catheter_device) force += rows[i].multiplier;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (wall[i].device != catheter_device) continue;
         const auto from_tip = static_cast<std::size_t>(std::floor(wall[i].arc_mm / catheter_spacing_mm + 0.5));
@@ -62,8 +66,8 @@ std::vector<WallLimit> wall_limits(const Parts& p, const CatheterShape& now) {
         WallLimit limit;
         limit.point = static_cast<Index>(point);
         limit.normal = rows[i].normal;
-        limit.gap = rows[i].normal.dot(now.points[point] - wall[i].point) - wall[i].radius;
-        limit.force = rows[i].multiplier;
+        limit.gap = rows[i].normal.dot(now.points[point] - wall[i].point) - wall[i].offset;
+        limit.force = force;
         limit.penetration_limit = p.catheter->penetration_limit_mm;
         limit.force_limit = p.catheter->force_limit_n * units::newton;
         limits.push_back(limit);

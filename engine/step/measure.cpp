@@ -10,6 +10,10 @@
 namespace cathlab {
 namespace {
 
+// What is refused below these is rounding and not an event.
+constexpr double refused_advance_mm = 1e-6;
+constexpr double refused_part = 1e-6;
+
 void put(double& x, double& y, double& z, const Vec3& p) {
     x = p.x();
     y = p.y();
@@ -27,7 +31,7 @@ void measure_wire(const Parts& p, const StepSums& sums, double n, Channels& c) {
     c.wire_penetration_mm = sums.wire_penetration_mm;
     c.wire_stretch_max = p.wire->max_stretch();
     c.wire_refused_mm = p.wire_drive->refused_mm;
-    if (std::fabs(sums.wire_refused_mm) > 0.0)
+    if (std::fabs(sums.wire_refused_mm) > refused_advance_mm)
         p.event("refused", wire_entity, "the drive of the guidewire slipped (mm not taken)", sums.wire_refused_mm);
 }
 
@@ -43,7 +47,7 @@ void measure_catheter(const Parts& p, const StepSums& sums, double n, Channels& 
     c.catheter_contacts = static_cast<double>(sums.catheter_contacts);
     c.catheter_penetration_mm = sums.catheter_penetration_mm;
     c.catheter_refused = sums.catheter_refused;
-    if (sums.catheter_refused > 0.0)
+    if (sums.catheter_refused > refused_part)
         p.event("refused", catheter_entity, "the wall took a part of the catheter's command only (part refused)",
                 sums.catheter_refused);
 }

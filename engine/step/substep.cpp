@@ -17,6 +17,11 @@ constexpr double wire_contact_limit_mn = 3000.0;
 // 1 N, the clearance of a 0.035 in wire in a 6 Fr lumen.  Small beside the wall's 0.01 mm/mN.
 constexpr double bore_compliance = 2e-4;
 constexpr double bore_spacing_mm = 2.5;
+// Sweeps over the catheter's rows in a pass: cheap beside a fit of the clusters.
+constexpr int kinematic_sweeps = 6;
+// A pass is repeated, with contacts looked for anew, while device and wall slid past each other by more than this.
+constexpr double stale_mm = 0.2;
+constexpr int extra_passes = 2;
 
 void command_wire(Parts& p, const Input& input, double h, StepSums& sums) {
     const bool selected = input.device < 0.5;
@@ -51,6 +56,14 @@ void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<Ch
     }
     p.wire->solve(h, rows);
     std::copy(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(wall_rows.size()), wall_rows.begin());
+}
+
+// Rows for the samples where they are now, against the wall at `particles`.
+void find_contacts(Parts& p, DeviceSamples& samples, std::span<const Vec3> particles) {
+    update(*p.surface, particles, *p.surface_state, p.world->workers());
+    refresh_samples(p, samples);
+    p.contacts->detect(*p.surface, *p.surface_state, samples.list, p.settings->contact_margin_mm, p.wall_scratch->start,
+                       p.wall_scratch->compliance, p.world->workers());
 }
 
 void add_report(const Parts& p, const ContactReport& report, StepSums& sums) {
@@ -122,12 +135,10 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
             wall.fixed[i] ? Vec3(wall.rest[i] + (1.0 - s1) * support_before[i] + s1 * support_after[i]) : wall.rest[i];
     predict(wall, state, scratch, h, target, extra.external(), workers);
 
-    // 2. Contacts, against the wall where it is predicted to be.
+    // 2. Contacts, against the wall where it was when the substep began: the prediction is inertia alone, and a wall
+    // that leans on a device would be looked for where the device is not.
     p.stage("contact");
-    update(*p.surface, scratch.start, *p.surface_state, workers);
-    refresh_samples(p, samples);
-    p.contacts->detect(*p.surface, *p.surface_state, samples.list, p.settings->contact_margin_mm, scratch.start,
-                       scratch.compliance, workers);
+    find_contacts(p, samples, scratch.start);
     p.stage("heart");
     extra.detect_heart(p, drive, h);
 
@@ -135,7 +146,8 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
     // that a row sees the gap that the wall would really leave.
     std::vector<ChainRow> rows;
     std::vector<ChainRow> bore_rows;
-    for (int pass = 0; pass < p.settings->iterations; ++pass) {
+    int passes = p.settings->iterations;
+    for (int pass = 0; pass < passes; ++pass) {
         p.stage("softbody");
         solve_goals(wall, state, scratch, workers);
         extra.gather(p);
@@ -149,12 +161,22 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
             solve_wire(p, samples, h, rows, bore_rows);
             p.stage("contact");
         }
-        p.contacts->solve_kinematic();
+        p.contacts->solve_kinematic(samples.list, state.x, scratch.compliance, kinematic_sweeps);
         extra.solve(p);
 
         p.stage("softbody");
         extra.gather(p);
         apply(wall, state, scratch, h, workers);
+
+        // Where wall and device slid past each other, the rows speak of another place: look again, and once more.
+        p.stage("contact");
+        refresh_samples(p, samples);
+        p.contacts->refresh(samples.list, state.x);
+        if (pass + 1 == passes && passes < p.settings->iterations + extra_passes &&
+            p.contacts->staleness() > stale_mm) {
+            find_contacts(p, samples, state.x);
+            ++passes;
+        }
     }
 
     // 4. Velocities from positions, forces from multipliers.
@@ -165,8 +187,6 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
         sums.wire_sheath_mn += p.wire->sheath_force_mn();
     }
     p.stage("contact");
-    refresh_samples(p, samples);
-    p.contacts->refresh(samples.list, state.x);
     add_report(p, p.contacts->report(state.x), sums);
     ++sums.substeps;
 }

@@ -142,7 +142,8 @@ TEST(Contact, ActionEqualsReactionInForceAndMoment) {
     const std::vector<double> compliance(mesh.vertices.size(), 0.2);
     contacts.detect(model, state, samples, 1.5, mesh.vertices, compliance, Workers(1));
     contacts.refresh(samples, mesh.vertices);
-    contacts.solve_kinematic();
+    std::vector<Vec3> moved = mesh.vertices;
+    contacts.solve_kinematic(samples, moved, compliance, 1);
     const ContactReport report = contacts.report(mesh.vertices);
     EXPECT_GT(report.active, 50);
     EXPECT_LT(report.force_imbalance, 1e-12);
@@ -199,7 +200,7 @@ TEST(Contact, AKinematicDevicePressedIntoTheWallReadsItsSpring) {
                         Workers(1));
         for (int k = 0; k < 2; ++k) {
             contacts.refresh(samples, wall.x);
-            contacts.solve_kinematic();
+            contacts.solve_kinematic(samples, wall.x, wall.compliance(), 1);
             wall.apply(contacts);
         }
         wall.finish();
@@ -322,7 +323,7 @@ TEST(Contact, FeedingKeepsTheForcesOfTheMaterialPoints) {
     };
     std::vector<DeviceSample> samples = line_of_samples(0.0, 6, 0.0);
     detect(samples);
-    contacts.solve_kinematic();
+    contacts.solve_kinematic(samples, wall.x, wall.compliance(), 1);
     const double third = contacts.rows()[2].multiplier;
     EXPECT_GT(third, 0.1);
     std::reverse(samples.begin(), samples.end());         // another order of the same samples,
@@ -342,7 +343,7 @@ TEST(Contact, TipAndShaftAreCountedApart) {
     const std::vector<DeviceSample> samples = line_of_samples(0.0, 12, 0.0);  // arc 0 to 22: six within 10 mm
     contacts.detect(wall.surface.model, wall.surface.state, samples, 1.5, wall.before, wall.compliance(), Workers(1));
     contacts.refresh(samples, wall.x);
-    contacts.solve_kinematic();
+    contacts.solve_kinematic(samples, wall.x, wall.compliance(), 1);
     double tip = 0.0, all = 0.0;
     for (std::size_t r = 0; r < contacts.rows().size(); ++r) {
         all += contacts.rows()[r].multiplier;
@@ -390,7 +391,8 @@ TEST(Contact, AWallThatIsHeldCountsAsAStiffSpring) {
     contacts.detect(s.model, s.state, samples, 1.5, s.particles, std::vector<double>(s.particles.size(), 0.0),
                     Workers(1));
     contacts.refresh(samples, s.particles);
-    contacts.solve_kinematic();
+    std::vector<Vec3> held = s.particles;
+    contacts.solve_kinematic(samples, held, std::vector<double>(held.size(), 0.0), 5);
     EXPECT_NEAR(contacts.rows()[0].multiplier, -contacts.rows()[0].gap / 1e-4, 1e-6);
     EXPECT_TRUE(std::isfinite(contacts.rows()[0].multiplier));
 }
