@@ -98,9 +98,13 @@ ContactSet::Found ContactSet::look(const LumenSurfaceModel& model, const LumenSu
     found.wall[static_cast<std::size_t>(found.count++)] = nearest;
     found.smooth = inward_smooth_normal(model, surface, nearest.triangle, nearest.barycentric);
     if (found.smooth.dot(nearest.inward_normal) < 0.5) found.smooth = nearest.inward_normal;
+    const int most = sample.walls > 0 ? std::min(sample.walls, max_rows_per_sample) : settings_.rows_per_sample;
+    if (most < 2) return found;
     for (const SurfacePoint& wall :
-         further_walls(model, surface, sample.position, reach, nearest, found.smooth, settings_.rows_per_sample - 1)) {
-        found.wall[static_cast<std::size_t>(found.count++)] = wall;
+         further_walls(model, surface, sample.position, reach, nearest, found.smooth, most - 1)) {
+        // Rows that look at each other across a fold would lock: the nearest wall alone decides on which side to stay.
+        if (wall.inward_normal.dot(nearest.inward_normal) > 0.0)
+            found.wall[static_cast<std::size_t>(found.count++)] = wall;
     }
     return found;
 }
@@ -264,6 +268,13 @@ void ContactSet::refresh(std::span<const DeviceSample> samples_now, std::span<co
     }
 }
 
+double ContactSet::deepest(Index device) const {
+    double depth = 0.0;
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+        if (wall_[r].device == device) depth = std::max(depth, -rows_[r].gap);
+    return depth;
+}
+
 double ContactSet::staleness() const {
     double worst = 0.0;
     for (std::size_t r = 0; r < rows_.size(); ++r) {
@@ -314,6 +325,21 @@ void ContactSet::solve_kinematic(std::span<const DeviceSample> samples_now, std:
                 particles[p] -= particle_compliance[p] * weight_[j] * change;
             }
         }
+}
+
+void ContactSet::yield(Index device, std::span<const ChainRow> before, std::span<Vec3> particles,
+                       std::span<const double> particle_compliance) const {
+    std::size_t k = 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+        if (wall_[r].device != device) continue;
+        const ChainRow& old = before[k++];
+        const Vec3 change =
+            (rows_[r].multiplier - old.multiplier) * rows_[r].normal + (rows_[r].tangent_force - old.tangent_force);
+        for (std::size_t j = wall_[r].begin; j < wall_[r].end; ++j) {
+            const std::size_t p = at(particle_[j]);
+            particles[p] -= particle_compliance[p] * weight_[j] * change;
+        }
+    }
 }
 
 void ContactSet::apply_to_wall(std::span<Vec3> force) const {

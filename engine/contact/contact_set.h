@@ -88,12 +88,20 @@ public:
     /// are read) and the particles where they are now.  Normal, weights and compliance stay.
     void refresh(std::span<const DeviceSample> samples_now, std::span<const Vec3> particles_now);
 
+    /// Deepest penetration among the rows of a device at the last refresh, mm, >= 0.
+    double deepest(Index device) const;
+
     /// How far, mm, device and wall have slid past each other since detect, at the worst row that is closed or nearly
     /// so: its normal and its wall point were true for another place.  Where it is large, detect again.
     double staleness() const;
 
     /// The rows of one device for the chain solve, contiguous, ascending from the tip; multipliers are in and out.
     std::span<ChainRow> chain_rows(Index device);
+
+    /// Moves the wall (particles, mm) by the change of one device's row forces since `before` (a copy of chain_rows),
+    /// each particle by its own compliance: what apply will find, so that the rows can be looked at again at once.
+    void yield(Index device, std::span<const ChainRow> before, std::span<Vec3> particles,
+               std::span<const double> particle_compliance) const;
 
     /// Sweeps over the rows of kinematic samples, each seeing what the ones before it did to the wall: particle j gives
     /// way by c_j w_j (change of force), so no averaging by N_j is needed and a dense row of samples converges in a few

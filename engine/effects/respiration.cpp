@@ -1,7 +1,8 @@
 // Breathing moves what the vessels hang on.  Displacement of a support at height z:
 //     u(z, t) = a w(z) sin^4(pi t / T) d,
-// the asymmetric breathing curve of Lujan et al. (1999) with n = 2, which dwells at end-expiration, and time counted from
-// there; w falls from 1 at and above the diaphragm's height to 0 at the pelvis, because bone holds the iliac arteries.
+// the asymmetric breathing curve of Lujan et al. (1999) with n = 2, which dwells at end-expiration, and time counted
+// from there; w falls from 1 at and above the diaphragm's height to 0 at the pelvis, because bone holds the iliac
+// arteries.
 #include <cmath>
 
 #include "core/deterministic_math.h"
@@ -23,7 +24,6 @@ public:
         const double s = det::sin(units::pi * ((context.time_s + context.dt) / period_ + phase_));
         const double breath = amplitude_ * s * s * s * s;
         for (std::size_t i = 0; i < drive.support_displacement.size(); ++i) {
-            if (!context.wall_fixed[i]) continue;
             const double z = context.wall_rest[i].z();
             double w = upper_ > lower_ ? (z - lower_) / (upper_ - lower_) : 1.0;
             w = w < 0.0 ? 0.0 : (w > 1.0 ? 1.0 : w);

@@ -79,6 +79,8 @@ Shared<SoftBodyModel> build_wall(const SceneSpec& spec, AnatomyModel& anatomy) {
     parameters.cluster_radius_mm = spec.wall.cluster_radius_mm;
     parameters.cluster_stiffness = spec.wall.cluster_stiffness;
     parameters.damping_per_s = spec.wall.damping_per_s;
+    parameters.surrounding_kpa_per_mm = spec.wall.surrounding_kpa_per_mm;
+    parameters.surrounding_kpa_s_per_mm = spec.wall.surrounding_kpa_s_per_mm;
     parameters.reference_spacing_mm = spec.wall.particle_spacing_mm;
     override_regions(spec, anatomy, parameters);
 

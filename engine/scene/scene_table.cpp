@@ -65,6 +65,10 @@ Table<SceneWall> wall_table() {
                 "reach of a cluster along the wall, r_c")
         .number("cluster_stiffness", &SceneWall::cluster_stiffness, "1", {0, 0.999}, "t_c, 0 = limp, near 1 = stiff")
         .number("density_kg_m3", &SceneWall::density_kg_m3, "kg/m3", {100, 20000}, "density of the wall")
+        .number("surrounding_kpa_per_mm", &SceneWall::surrounding_kpa_per_mm, "kPa/mm", {0, 100},
+                "stiffness of the tissue around the vessels, an elastic foundation; 0 = nothing around them")
+        .number("surrounding_kpa_s_per_mm", &SceneWall::surrounding_kpa_s_per_mm, "kPa s/mm", {0, 10},
+                "damping of that tissue")
         .number("damping_per_s", &SceneWall::damping_per_s, "1/s", {0, 1000},
                 "rate at which motion against the clusters dies")
         .number("friction", &SceneWall::friction, "1", {0, 2}, "Coulomb coefficient between wall and devices")

@@ -36,6 +36,10 @@ void check(const WallParameters& p) {
     check_positive("cluster_radius_mm", p.cluster_radius_mm);
     check_positive("reference_spacing_mm", p.reference_spacing_mm);
     check_stiffness("cluster_stiffness", p.cluster_stiffness);
+    require(p.surrounding_kpa_per_mm >= 0.0 && std::isfinite(p.surrounding_kpa_per_mm), "surrounding_kpa_per_mm",
+            p.surrounding_kpa_per_mm, "0 or above");
+    require(p.surrounding_kpa_s_per_mm >= 0.0 && std::isfinite(p.surrounding_kpa_s_per_mm), "surrounding_kpa_s_per_mm",
+            p.surrounding_kpa_s_per_mm, "0 or above");
     require(p.damping_per_s >= 0.0 && std::isfinite(p.damping_per_s), "damping_per_s", p.damping_per_s, "0 or above");
     for (const RegionWall& own : p.regions) {
         if (own.cluster_spacing_mm) check_positive("cluster_spacing_mm of a region", *own.cluster_spacing_mm);
@@ -106,11 +110,15 @@ SoftBodyModel build_soft_body(const WallSample& sample, const WallParameters& pa
         CATHLAB_CHECK(mass > 0.0, "a wall particle without mass");
         model.mass.push_back(mass);
         model.stiffness.push_back(mass / (reference_step_s * reference_step_s) * t_c / (1.0 - t_c));
+        if (parameters.surrounding_kpa_per_mm > 0.0)
+            model.support.push_back(parameters.surrounding_kpa_per_mm * sample.area_mm2[i]);
+        if (parameters.surrounding_kpa_s_per_mm > 0.0)
+            model.drag.push_back(parameters.surrounding_kpa_s_per_mm * sample.area_mm2[i]);
         model.fixed.push_back(is_fixed && is_fixed(sample.position[i]) ? 1 : 0);
     }
     const Membership membership = grow_clusters(sample, parameters);
     pack_clusters(membership, model);
-    model.free_bodies = find_free_bodies(membership, model.fixed);
+    if (model.support.empty() && model.drag.empty()) model.free_bodies = find_free_bodies(membership, model.fixed);
     return model;
 }
 

@@ -42,6 +42,10 @@ struct WallParameters {
     double cluster_radius_mm = 12.0;  ///< r_c: a cluster holds what lies within r_c along the wall
     double cluster_stiffness = 0.8;   ///< t_c in [0, 0.999]
     double damping_per_s = 5.0;       ///< rate at which a particle's velocity goes over to that of its goal, >= 0
+    /// What surrounds the wall holds it like an elastic foundation: a traction of so much per mm of displacement, and
+    /// per mm/s of speed, both 0 = nothing around it (a bench phantom).  The foundation stands where the supports of
+    /// fixed particles stand.
+    double surrounding_kpa_per_mm = 0.0, surrounding_kpa_s_per_mm = 0.0;
     double reference_spacing_mm =
         2.1;  ///< where particles are denser than this, s_c and r_c shrink with their distance, so
               ///< that a cluster of a coronary holds no more particles than one of the aorta
@@ -73,6 +77,8 @@ struct SoftBodyModel {
     std::vector<Vec3> normal;                    ///< (n) unit, out of the lumen, at rest
     std::vector<double> mass;                    ///< (n) kg
     std::vector<double> stiffness;               ///< (n) k_i, mN/mm
+    std::vector<double> support;                 ///< (n) stiffness of what surrounds the wall, mN/mm; empty = none
+    std::vector<double> drag;                    ///< (n) its damping, mN s/mm; empty = none
     std::vector<std::uint8_t> fixed;             ///< (n) 1 = follows its support
     std::vector<Index> region;                   ///< (n)
     std::vector<std::pair<Index, Index>> links;  ///< a < b

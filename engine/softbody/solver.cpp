@@ -120,8 +120,20 @@ void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& 
                 scratch.predicted[i] += pull;
                 coasted += length > largest_guess_mm ? Vec3(pull * (largest_guess_mm / length)) : pull;
             }
+            // The foundation's springs and dashpots are as implicit as the goals; they go into the right-hand side with
+            // x~.
+            double around = 0.0;
+            if (!model.support.empty()) {
+                around += model.support[i];
+                const Vec3& stand = fixed_target.empty() ? model.rest[i] : fixed_target[i];
+                scratch.predicted[i] += model.support[i] / inertia * stand;
+            }
+            if (!model.drag.empty()) {
+                around += model.drag[i] / h;
+                scratch.predicted[i] += model.drag[i] / h / inertia * state.x[i];
+            }
             state.x[i] = coasted;
-            scratch.compliance[i] = 1.0 / (inertia + stiffness(model, scratch, i));
+            scratch.compliance[i] = 1.0 / (inertia + around + stiffness(model, scratch, i));
         }
     });
 }

@@ -41,10 +41,10 @@ struct SoftBodyScratch {
 
 SoftBodyState rest_state(const SoftBodyModel& model);
 
-/// x~ = x + h v + h^2 f / m; fixed particles go to fixed_target (one a particle; empty: they stay).  Clears
-/// scratch.force and writes scratch.compliance.  The first fit starts from x~, except that a force moves this start by
-/// 0.5 mm at most: a hard local pull would tear the clusters' fits apart for nothing, and the iteration has the same
-/// end from either start.
+/// x~ = x + h v + h^2 f / m; fixed particles go to fixed_target (one a particle; empty: they stay), and what surrounds
+/// the wall stands there too (empty: at rest).  Clears scratch.force and writes scratch.compliance.  The first fit
+/// starts from x~, except that a force moves this start by 0.5 mm at most: a hard local pull would tear the clusters'
+/// fits apart for nothing, and the iteration has the same end from either start.
 void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
              std::span<const Vec3> fixed_target, std::span<const Vec3> external_force, const Workers& workers);
 

@@ -9,6 +9,12 @@
 namespace cathlab {
 namespace {
 
+// How far a command may drive the catheter into the wall in one substep, beyond what the wall has yielded: the wall is then
+// never more than this behind, and the device's own limit (0.5 mm) is kept with a margin for its folds.
+constexpr double depth_a_substep_mm = 0.15;
+// Rows at most for a sample of the front end, round which the wall folds like a tent.
+constexpr int walls_of_a_tip = 4;
+
 // Material arc length from the wire's tip of the centre of every link.
 std::vector<double> link_centres(const Rod& wire) {
     std::vector<double> centre(wire.link_count());
@@ -68,7 +74,7 @@ std::vector<WallLimit> wall_limits(const Parts& p, const CatheterShape& now) {
         limit.normal = rows[i].normal;
         limit.gap = rows[i].normal.dot(now.points[point] - wall[i].point) - wall[i].offset;
         limit.force = force;
-        limit.penetration_limit = p.catheter->penetration_limit_mm;
+        limit.penetration_limit = std::min(p.catheter->penetration_limit_mm, depth_a_substep_mm);
         limit.force_limit = p.catheter->force_limit_n * units::newton;
         limits.push_back(limit);
     }
@@ -153,6 +159,7 @@ void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceS
             d.radius = s.radius;
             d.device = wire_device;
             d.arc_mm = arc;
+            if (arc < 2.0 * s.radius) d.walls = walls_of_a_tip;
             d.link = s.link;
             d.arm = s.arm;
             d.friction = wire.spec().friction;
@@ -171,6 +178,7 @@ void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceS
             d.radius = p.catheter->radius_mm();
             d.device = catheter_device;
             d.arc_mm = from_tip;
+            if (from_tip < p.catheter->outer_diameter_mm) d.walls = walls_of_a_tip;
             d.friction = p.catheter->friction;
             d.kinematic = true;
             samples.list.push_back(d);

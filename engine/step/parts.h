@@ -49,9 +49,11 @@ struct AnnulusRing {
     Vec3 axis = Vec3::UnitZ();
 };
 
-/// Component of the vessel: where the fixed particles stand, as displacements from rest.
+/// Component of the vessel: where the fixed particles, and the tissue around the others, stand, as displacements from
+/// rest.
 struct SupportState {
-    std::vector<Vec3> displacement;  ///< (n) at the end of the last step; zero for free particles
+    std::vector<Vec3>
+        displacement;  ///< (n) at the end of the last step; zero for free particles with nothing around them
 };
 inline void visit(Archive& archive, SupportState& state) {
     archive.field("displacement", state.displacement);

@@ -50,7 +50,12 @@ void prepare(World& world) {
     world.add(vessel, SoftBodyScratch{});
     world.add(vessel, LumenSurfaceState{});
     world.add(vessel, SupportState{std::vector<Vec3>(n, Vec3::Zero())});
-    world.add(vessel, ContactSet{});
+    ContactSettings contact;
+    // One wall a sample: with samples this dense their neighbours see the other walls, and several rows of one sample
+    // in a fold of the wall can lock against each other.
+    contact.rows_per_sample = 1;
+    contact.recovery_mm = 8.0;
+    world.add(vessel, ContactSet(contact));
     auto& centreline = world.add(vessel, MovedCentreline{});
     for (const CentrelineNode& node : (*anatomy)->centreline.nodes) centreline.positions.push_back(node.position);
     centreline.binding = bind_points(**wall, centreline.positions, centreline_particles, false);

@@ -44,8 +44,9 @@ void step(World& world, const Input& wanted, Channels& channels) {
     drive.support_displacement.assign(parts.wall->size(), Vec3::Zero());
     parts.each_effect(hook_drive, [&](Effect& effect) { effect.drive(context, drive); });
     const std::vector<Vec3> before = parts.supports->displacement;
-    for (std::size_t i = 0; i < parts.wall->size(); ++i)
-        if (!parts.wall->fixed[i]) drive.support_displacement[i].setZero();
+    if (parts.wall->support.empty())
+        for (std::size_t i = 0; i < parts.wall->size(); ++i)
+            if (!parts.wall->fixed[i]) drive.support_displacement[i].setZero();
     parts.supports->displacement = drive.support_displacement;
 
     StepSums sums;

@@ -19,6 +19,9 @@ constexpr double bore_compliance = 2e-4;
 constexpr double bore_spacing_mm = 2.5;
 // Sweeps over the catheter's rows in a pass: cheap beside a fit of the clusters.
 constexpr int kinematic_sweeps = 6;
+// The chain is solved again at once, against the wall that has yielded to it, while it is pressed in deeper than this.
+constexpr int wire_solves = 4;
+constexpr double wire_depth_mm = 0.05;
 // A pass is repeated, with contacts looked for anew, while device and wall slid past each other by more than this.
 constexpr double stale_mm = 0.2;
 constexpr int extra_passes = 2;
@@ -156,10 +159,16 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
         p.stage("contact");
         refresh_samples(p, samples);
         p.contacts->refresh(samples.list, state.x);
-        if (p.wire) {
+        for (int k = 0; p.wire && k < wire_solves && (k == 0 || p.contacts->deepest(wire_device) > wire_depth_mm);
+             ++k) {
             p.stage("rod");
+            const std::span<ChainRow> wall_rows = p.contacts->chain_rows(wire_device);
+            const std::vector<ChainRow> before(wall_rows.begin(), wall_rows.end());
             solve_wire(p, samples, h, rows, bore_rows);
             p.stage("contact");
+            p.contacts->yield(wire_device, before, state.x, scratch.compliance);
+            refresh_samples(p, samples);
+            p.contacts->refresh(samples.list, state.x);
         }
         p.contacts->solve_kinematic(samples.list, state.x, scratch.compliance, kinematic_sweeps);
         extra.solve(p);

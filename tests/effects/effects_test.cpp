@@ -68,13 +68,6 @@ TEST(Respiration, IsAtRestAtEndExpirationAndFullyOutHalfABreathLater) {
     EXPECT_LT(out.support_displacement[0].z(), 0.0);              // downwards
 }
 
-TEST(Respiration, MovesOnlyWhatIsFixed) {
-    const auto effect = with_defaults(*find_effect("respiration"));
-    Supports supports;
-    supports.fixed = {0, 1, 1};
-    EXPECT_EQ(supports.at(*effect, 2.0).support_displacement[0], Vec3(0, 0, 0));
-}
-
 TEST(Respiration, LastsLongerAtExpirationThanAtInspiration) {
     const auto effect = with_defaults(*find_effect("respiration"));
     Supports supports;
