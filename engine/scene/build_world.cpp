@@ -282,9 +282,15 @@ std::shared_ptr<const SceneModels> build_models(const SceneSpec& spec, const Bui
 std::unique_ptr<World> build_world(const SceneSpec& spec, const SceneModels& models, std::uint64_t seed, int threads) {
     auto world = std::make_unique<World>(seed, Workers(threads));
     const Entity top = world->create(world_entity);
-    world->add(top,
-               StepSettings{spec.step.dt_s, spec.step.substeps, spec.step.iterations, spec.step.contact_margin_mm,
-                            spec.step.sample_spacing_mm, spec.force.filter_s, spec.step.wire_penetration_limit_mm});
+    StepSettings settings;
+    settings.dt = spec.step.dt_s;
+    settings.substeps = spec.step.substeps;
+    settings.iterations = spec.step.iterations;
+    settings.contact_margin_mm = spec.step.contact_margin_mm;
+    settings.sample_spacing_mm = spec.step.sample_spacing_mm;
+    settings.force_filter_s = spec.force.filter_s;
+    settings.wire_penetration_limit_mm = spec.step.wire_penetration_limit_mm;
+    world->add(top, settings);
     const Entity vessel = world->create(vessel_entity);
     world->add(vessel, models.anatomy);
     world->add(vessel, models.wall);

@@ -9,8 +9,8 @@
 namespace cathlab {
 namespace {
 
-// How far a command may drive the catheter into the wall in one substep, beyond what the wall has yielded: the wall is then
-// never more than this behind, and the device's own limit (0.5 mm) is kept with a margin for its folds.
+// How far a command may drive the catheter into the wall in one substep, beyond what the wall has yielded: the wall is
+// then never more than this behind, and the device's own limit (0.5 mm) is kept with a margin for its folds.
 constexpr double depth_a_substep_mm = 0.15;
 // Rows at most for a sample of the front end, round which the wall folds like a tent.
 constexpr int walls_of_a_tip = 4;
@@ -81,18 +81,50 @@ std::vector<WallLimit> wall_limits(const Parts& p, const CatheterShape& now) {
     return limits;
 }
 
+// Near the wall no sample may run further than this in a substep: rows hold the wall's place and direction as they were
+// when it began, and a tip that rushes along a dented wall would leave both behind.
+constexpr double run_a_substep_mm = 0.2;
+
+double pace_at_the_wall(const CatheterSpec& spec, const CatheterState& state, const CatheterCommand& command,
+                        const Rail& rail, const CatheterShape& start, double h, double limit_mm) {
+    const CatheterShape full = shape(spec, attempt(spec, state, command, 1.0, h, limit_mm), rail);
+    const std::size_t common = std::min(start.points.size(), full.points.size());
+    double run = 0.0;
+    for (std::size_t k = 1; k <= common; ++k)
+        run =
+            std::max(run, (full.points[full.points.size() - k] - start.points[start.points.size() - k]).squaredNorm());
+    run = std::sqrt(run);
+    return run > run_a_substep_mm ? run_a_substep_mm / run : 1.0;
+}
+
+// The guidewire that sticks out of the catheter has no say in where the catheter takes it.  While it is pressed into
+// the wall half as deep as its own drive would take it, or beyond its force limit, the catheter may only give way:
+// withdraw and straighten.
+bool wire_presses(const WireDrive& drive, const StepSettings& settings) {
+    return drive.penetration_mm > settings.wire_penetration_limit_mm ||
+           drive.contact_mn > settings.wire_contact_limit_mn;
+}
+
+void hold_back(CatheterCommand& command, const CatheterState& state) {
+    command.advance_mm = std::min(0.0, command.advance_mm);
+    command.rotate_rad = 0.0;
+    for (std::size_t k = 0; k < state.bend_rad.size(); ++k) {
+        command.bend_rad[k] = std::min(command.bend_rad[k], state.bend_rad[k]);
+        command.direction_rad[k] = state.direction_rad[k];
+    }
+}
+
 }  // namespace
 
-double drive_fraction(const Rod& wire, const WireDrive& drive, const StepSettings& settings, double advance_mm,
-                      double contact_limit_mn) {
+double drive_fraction(const Rod& wire, const WireDrive& drive, const StepSettings& settings, double advance_mm) {
     const double limit = wire.spec().max_push_n * units::newton;
     const double reaction = advance_mm > 0.0 ? wire.sheath_force_mn() : -wire.sheath_force_mn();
     double fraction = std::clamp((limit - reaction) / (0.2 * limit), 0.0, 1.0);
     if (advance_mm > 0.0) {
         const double depth = settings.wire_penetration_limit_mm;
         fraction = std::min(fraction, std::clamp((depth - drive.penetration_mm) / (0.5 * depth), 0.0, 1.0));
-        fraction =
-            std::min(fraction, std::clamp((contact_limit_mn - drive.contact_mn) / (0.2 * contact_limit_mn), 0.0, 1.0));
+        const double most = settings.wire_contact_limit_mn;
+        fraction = std::min(fraction, std::clamp((most - drive.contact_mn) / (0.2 * most), 0.0, 1.0));
     }
     return fraction;
 }
@@ -121,10 +153,14 @@ double move_catheter(Parts& p, const Input& input, double h) {
     const double steerable = p.catheter->steerable_length_mm();
     const double limit = insertion_limit(route.graph, route.path, state.route, steerable + 60.0);
     const std::vector<WallLimit> limits = wall_limits(p, start);
-    CatheterTaken taken = take(*p.catheter, state, command, rail, limits, h, limit);
+    if (p.wire && wire_presses(*p.wire_drive, *p.settings)) hold_back(command, state);
+    const double pace = limits.empty() ? 1.0 : pace_at_the_wall(*p.catheter, state, command, rail, start, h, limit);
+    command.advance_mm *= pace;
+    command.rotate_rad *= pace;
+    CatheterTaken taken = take(*p.catheter, state, command, rail, limits, pace * h, limit);
     state = taken.state;
     route.shape = std::move(taken.shape);
-    return taken.refused;
+    return std::max(taken.refused, 1.0 - pace);
 }
 
 CatheterBore catheter_bore(const Parts& p) {

@@ -22,8 +22,7 @@ struct DeviceSamples {
 /// The part of the wanted advance that the drive of the wire takes, in [0, 1].  The rollers slip as the reaction at the
 /// sheath comes near the device's max_push_n, and while the wire is pressed deeper into the wall than the limit;
 /// pulling the other way is always allowed.
-double drive_fraction(const Rod& wire, const WireDrive& drive, const StepSettings& settings, double advance_mm,
-                      double contact_limit_mn);
+double drive_fraction(const Rod& wire, const WireDrive& drive, const StepSettings& settings, double advance_mm);
 
 /// Takes of the catheter's command what the wall allows and moves it.  Returns the refused part, 0 to 1.
 double move_catheter(Parts& parts, const Input& input, double h);

@@ -51,9 +51,8 @@ void prepare(World& world) {
     world.add(vessel, LumenSurfaceState{});
     world.add(vessel, SupportState{std::vector<Vec3>(n, Vec3::Zero())});
     ContactSettings contact;
-    // One wall a sample: with samples this dense their neighbours see the other walls, and several rows of one sample
-    // in a fold of the wall can lock against each other.
-    contact.rows_per_sample = 1;
+    // Neighbours of a sample see the other walls: a few rows are enough.
+    contact.rows_per_sample = 3;
     contact.recovery_mm = 8.0;
     world.add(vessel, ContactSet(contact));
     auto& centreline = world.add(vessel, MovedCentreline{});

@@ -10,9 +10,6 @@
 namespace cathlab {
 namespace {
 
-// A contact that carries more than this makes the drive of the wire slip, mN: the force at which the catheter, too,
-// goes no further (CatheterSpec::force_limit_n).
-constexpr double wire_contact_limit_mn = 3000.0;
 // The catheter is kinematic; this is how far its bore yields to the wire, mm/mN, at points this far apart: 0.2 mm under
 // 1 N, the clearance of a 0.035 in wire in a 6 Fr lumen.  Small beside the wall's 0.01 mm/mN.
 constexpr double bore_compliance = 2e-4;
@@ -29,8 +26,7 @@ constexpr int extra_passes = 2;
 void command_wire(Parts& p, const Input& input, double h, StepSums& sums) {
     const bool selected = input.device < 0.5;
     const double wanted = selected ? input.advance * h : 0.0;
-    const double fraction =
-        wanted == 0.0 ? 1.0 : drive_fraction(*p.wire, *p.wire_drive, *p.settings, wanted, wire_contact_limit_mn);
+    const double fraction = wanted == 0.0 ? 1.0 : drive_fraction(*p.wire, *p.wire_drive, *p.settings, wanted);
     const double taken = p.wire->command(fraction * wanted, selected ? input.rotate * units::deg * h : 0.0);
     sums.wire_refused_mm += wanted - taken;
     p.wire_drive->refused_mm += std::fabs(wanted - taken);
