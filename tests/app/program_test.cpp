@@ -133,5 +133,57 @@ TEST(Program, WhatIsNoRunFolderCannotBeReplayed) {
     EXPECT_TRUE(one_sentence(call("replay " + folder.path() + " --verify")));
 }
 
+TEST(Program, ARunIsReplayedBitForBitAndAnEditedOneIsFoundOut) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path("run");
+    const std::string scene = std::string(CATHLAB_SOURCE_DIR) + "/scenes/rigs/fork.toml";
+    const Outcome run = call("run " + scene + " --seconds 2 --video none --threads 1 --out " + out);
+    ASSERT_EQ(run.code, 0) << run.text;
+    const Outcome replay = call("replay " + out + " --verify --threads 2");
+    EXPECT_EQ(replay.code, 0) << replay.text;
+
+    // One digit of the last line of the trace.
+    std::string trace;
+    {
+        std::ifstream file(out + "/trace.csv", std::ios::binary);
+        trace.assign(std::istreambuf_iterator<char>(file), {});
+    }
+    const std::size_t comma = trace.rfind("\n99,");
+    ASSERT_NE(comma, std::string::npos);
+    trace[comma + 4] = trace[comma + 4] == '7' ? '3' : '7';
+    folder.write("run/trace.csv", trace);
+    const Outcome edited = call("replay " + out + " --verify");
+    EXPECT_EQ(edited.code, 1) << edited.text;
+    EXPECT_NE(edited.text.find("step 99"), std::string::npos) << edited.text;
+}
+
+TEST(Program, ABadScriptOrMeshLeavesNoRunFolder) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path("run");
+    const std::string rig = std::string(CATHLAB_SOURCE_DIR) + "/scenes/rigs/tube_wire.toml";
+    for (const char* row :
+         {"0,advance,nan", "0,advance,inf", "nan,advance,1", "0,advance,1e9", "0,advanse,1", "-1,advance,1"}) {
+        const Outcome run = call("run " + rig + " --video none --seconds 1 --out " + out + " --script " +
+                                 folder.write("s.csv", std::string("t_s,action,value\n") + row + "\n"));
+        EXPECT_EQ(run.code, 1) << row << ": " << run.text;
+        EXPECT_TRUE(one_sentence(run)) << row;
+        EXPECT_FALSE(std::filesystem::exists(out)) << row;
+    }
+    for (const std::string& mesh :
+         {std::string(), std::string("\0\1\2\3\4", 5), std::string("solid nothing\nendsolid nothing\n"),
+          std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")}) {
+        for (const char* name : {"m.obj", "m.stl", "m.ply"}) {
+            folder.write(name, mesh);
+            const std::string scene =
+                folder.write("mesh.toml", std::string("schema = 1\n[anatomy]\nmesh = '") + name + "'\nunit = 'mm'\n");
+            const Outcome run = call("run " + scene + " --video none --seconds 1 --out " + out);
+            EXPECT_EQ(run.code, 1) << name << ": " << run.text;
+            EXPECT_EQ(run.text.rfind("terminate", 0), std::string::npos) << run.text;
+            EXPECT_NE(run.text.find("cathlab: "), std::string::npos) << run.text;
+            EXPECT_FALSE(std::filesystem::exists(out)) << name;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace cathlab
