@@ -50,7 +50,7 @@ struct SceneWall {
     double cluster_stiffness = 0.8;  ///< t_c
     double density_kg_m3 = 1060.0;
     double damping_per_s = 10.0;
-    double surrounding_kpa_per_mm = 0.05;     ///< elastic foundation: tissue around the vessels
+    double surrounding_kpa_per_mm = 0.02;     ///< elastic foundation: tissue around the vessels
     double surrounding_kpa_s_per_mm = 0.002;  ///< its damping
     double friction = 0.1;
     std::vector<SceneWallRegion> regions;

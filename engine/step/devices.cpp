@@ -98,7 +98,7 @@ double pace_at_the_wall(const CatheterSpec& spec, const CatheterState& state, co
 }
 
 // The guidewire that sticks out of the catheter has no say in where the catheter takes it.  While it is pressed into
-// the wall half as deep as its own drive would take it, or beyond its force limit, the catheter may only give way:
+// the wall beyond the limits of its own drive the catheter may only give way:
 // withdraw and straighten.
 bool wire_presses(const WireDrive& drive, const StepSettings& settings) {
     return drive.penetration_mm > settings.wire_penetration_limit_mm ||
