@@ -38,8 +38,8 @@ struct EffectContext {
 
 /// `drive`: where the supports go and how the heart is paced.
 struct Drive {
-    std::vector<Vec3>
-        support_displacement;  ///< (n) added to the rest position of fixed particles, mm; others are ignored
+    /// (n) where fixed particles, and the tissue around the others, go: displacement from rest, mm
+    std::vector<Vec3> support_displacement;
     double heart_rate_scale = 1.0;
     double heart_displacement_mm = 0.0;  ///< added to the cylinder's displacement
 };

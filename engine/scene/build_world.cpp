@@ -39,8 +39,11 @@ AnatomyModel get_anatomy(const SceneSpec& spec, const BuildOptions& options, con
     const auto progress = [&](double fraction, std::string_view what) {
         if (options.progress) options.progress(0.6 * fraction, what);
     };
-    if (!spec.anatomy.imported.mesh.empty())
-        return load_or_build(spec.anatomy.imported, options.cache_folder, workers, progress);
+    if (!spec.anatomy.imported.mesh.empty()) {
+        ImportedAnatomySpec imported = spec.anatomy.imported;
+        imported.where = spec.anatomy.where;
+        return load_or_build(imported, options.cache_folder, workers, progress);
+    }
     AnatomySpec anatomy = load_anatomy(spec.anatomy.file);
     anatomy.stenoses.insert(anatomy.stenoses.end(), spec.anatomy.stenoses.begin(), spec.anatomy.stenoses.end());
     if (spec.anatomy.face_count > 0) anatomy.meshing.face_count = spec.anatomy.face_count;

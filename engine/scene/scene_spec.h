@@ -22,7 +22,7 @@ struct SceneStep {
     int iterations = 2;
     double contact_margin_mm = 1.5;
     double sample_spacing_mm = 1.25;
-    double wire_penetration_limit_mm = 0.3;
+    double wire_penetration_limit_mm = 0.2;
 };
 
 /// [anatomy]: exactly one of file (parametric, with its stenoses) and imported.mesh.

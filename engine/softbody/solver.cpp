@@ -118,7 +118,10 @@ void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& 
                 const Vec3 pull = external_force[i] / inertia;
                 const double length = pull.norm();
                 scratch.predicted[i] += pull;
-                coasted += length > largest_guess_mm ? Vec3(pull * (largest_guess_mm / length)) : pull;
+                // Only a free body has to fall with its forces from the start: a held one would start its fit
+                // displaced, and a few passes never take that back.
+                if (!model.free_bodies.empty())
+                    coasted += length > largest_guess_mm ? Vec3(pull * (largest_guess_mm / length)) : pull;
             }
             // The foundation's springs and dashpots are as implicit as the goals; they go into the right-hand side with
             // x~.

@@ -12,6 +12,10 @@ namespace {
 // How far a command may drive the catheter into the wall in one substep, beyond what the wall has yielded: the wall is
 // then never more than this behind, and the device's own limit (0.5 mm) is kept with a margin for its folds.
 constexpr double depth_a_substep_mm = 0.15;
+// A wire that runs head-on into the wall (more than this against its front end) is fed no faster than so much in a
+// substep.
+constexpr double head_on_mn = 10.0;
+constexpr double head_on_advance_mm = 0.06;
 // Rows at most for a sample of the front end, round which the wall folds like a tent.
 constexpr int walls_of_a_tip = 4;
 
@@ -98,20 +102,23 @@ double pace_at_the_wall(const CatheterSpec& spec, const CatheterState& state, co
 }
 
 // The guidewire that sticks out of the catheter has no say in where the catheter takes it.  While it is pressed into
-// the wall beyond the limits of its own drive the catheter may only give way:
-// withdraw and straighten.
+// the wall beyond the limits of its own drive the catheter may only give way, that is
+// withdraw and straighten.  True if that took a part of the command.
 bool wire_presses(const WireDrive& drive, const StepSettings& settings) {
     return drive.penetration_mm > settings.wire_penetration_limit_mm ||
            drive.contact_mn > settings.wire_contact_limit_mn;
 }
 
-void hold_back(CatheterCommand& command, const CatheterState& state) {
+bool hold_back(CatheterCommand& command, const CatheterState& state) {
+    const CatheterCommand wanted = command;
     command.advance_mm = std::min(0.0, command.advance_mm);
     command.rotate_rad = 0.0;
     for (std::size_t k = 0; k < state.bend_rad.size(); ++k) {
         command.bend_rad[k] = std::min(command.bend_rad[k], state.bend_rad[k]);
         command.direction_rad[k] = state.direction_rad[k];
     }
+    return command.advance_mm != wanted.advance_mm || command.rotate_rad != wanted.rotate_rad ||
+           command.bend_rad != wanted.bend_rad;
 }
 
 }  // namespace
@@ -121,6 +128,7 @@ double drive_fraction(const Rod& wire, const WireDrive& drive, const StepSetting
     const double reaction = advance_mm > 0.0 ? wire.sheath_force_mn() : -wire.sheath_force_mn();
     double fraction = std::clamp((limit - reaction) / (0.2 * limit), 0.0, 1.0);
     if (advance_mm > 0.0) {
+        if (drive.head_on_mn > head_on_mn) fraction = std::min(fraction, head_on_advance_mm / advance_mm);
         const double depth = settings.wire_penetration_limit_mm;
         fraction = std::min(fraction, std::clamp((depth - drive.penetration_mm) / (0.5 * depth), 0.0, 1.0));
         const double most = settings.wire_contact_limit_mn;
@@ -153,14 +161,14 @@ double move_catheter(Parts& p, const Input& input, double h) {
     const double steerable = p.catheter->steerable_length_mm();
     const double limit = insertion_limit(route.graph, route.path, state.route, steerable + 60.0);
     const std::vector<WallLimit> limits = wall_limits(p, start);
-    if (p.wire && wire_presses(*p.wire_drive, *p.settings)) hold_back(command, state);
+    const bool held = p.wire && wire_presses(*p.wire_drive, *p.settings) && hold_back(command, state);
     const double pace = limits.empty() ? 1.0 : pace_at_the_wall(*p.catheter, state, command, rail, start, h, limit);
     command.advance_mm *= pace;
     command.rotate_rad *= pace;
     CatheterTaken taken = take(*p.catheter, state, command, rail, limits, pace * h, limit);
     state = taken.state;
     route.shape = std::move(taken.shape);
-    return std::max(taken.refused, 1.0 - pace);
+    return held ? 1.0 : std::max(taken.refused, 1.0 - pace);
 }
 
 CatheterBore catheter_bore(const Parts& p) {

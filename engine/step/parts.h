@@ -64,11 +64,13 @@ struct WireDrive {
     double refused_mm = 0.0;      ///< sum of what was asked for and not taken
     double contact_mn = 0.0;      ///< largest contact force in the last substep
     double penetration_mm = 0.0;  ///< deepest penetration in the last substep
+    double head_on_mn = 0.0;      ///< force on the front end against its own direction in the last substep
 };
 inline void visit(Archive& archive, WireDrive& drive) {
     archive.field("refused_mm", drive.refused_mm);
     archive.field("contact_mn", drive.contact_mn);
     archive.field("penetration_mm", drive.penetration_mm);
+    archive.field("head_on_mn", drive.head_on_mn);
 }
 
 /// Component of the catheter beside CatheterSpec, CatheterState and CatheterMount.

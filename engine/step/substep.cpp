@@ -17,8 +17,10 @@ constexpr double bore_spacing_mm = 2.5;
 // Sweeps over the catheter's rows in a pass: cheap beside a fit of the clusters.
 constexpr int kinematic_sweeps = 6;
 // The chain is solved again at once, against the wall that has yielded to it, while it is pressed in deeper than this.
-constexpr int wire_solves = 4;
-constexpr double wire_depth_mm = 0.05;
+constexpr int wire_solves = 8;
+constexpr double wire_depth_mm = 0.03;
+// The front end of the wire: what pushes back there stops it.
+constexpr double front_mm = 3.0;
 // A pass is repeated, with contacts looked for anew, while device and wall slid past each other by more than this.
 constexpr double stale_mm = 0.2;
 constexpr int extra_passes = 2;
@@ -87,11 +89,15 @@ void add_report(const Parts& p, const ContactReport& report, StepSums& sums) {
     if (p.wire_drive) {
         p.wire_drive->contact_mn = 0.0;
         p.wire_drive->penetration_mm = 0.0;
+        p.wire_drive->head_on_mn = 0.0;
     }
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (wall[i].device == wire_device && p.wire_drive) {
             p.wire_drive->contact_mn = std::max(p.wire_drive->contact_mn, rows[i].multiplier);
             p.wire_drive->penetration_mm = std::max(p.wire_drive->penetration_mm, -rows[i].gap);
+            if (wall[i].arc_mm < front_mm)
+                p.wire_drive->head_on_mn -=
+                    rows[i].multiplier * rows[i].normal.dot(p.wire->link_pose(0).orientation * Vec3::UnitZ());
         }
         if (wall[i].arc_mm <= p.contacts->settings().tip_length_mm && rows[i].multiplier > strongest) {
             strongest = rows[i].multiplier;
@@ -130,8 +136,7 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
     p.stage("softbody");
     std::vector<Vec3> target(wall.size());
     for (std::size_t i = 0; i < target.size(); ++i)
-        target[i] =
-            wall.fixed[i] ? Vec3(wall.rest[i] + (1.0 - s1) * support_before[i] + s1 * support_after[i]) : wall.rest[i];
+        target[i] = wall.rest[i] + (1.0 - s1) * support_before[i] + s1 * support_after[i];
     predict(wall, state, scratch, h, target, extra.external(), workers);
 
     // 2. Contacts, against the wall where it was when the substep began: the prediction is inertia alone, and a wall

@@ -17,7 +17,7 @@ struct StepSettings {
     double sample_spacing_mm = 1.25;         ///< of contact samples along the guidewire
     double force_filter_s = 0.2;             ///< mean filter of the force bar
     double wire_contact_limit_mn = 1000.0;    ///< ... or while one of its contacts carries more than this
-    double wire_penetration_limit_mm = 0.3;  ///< the drive slips while the wire is pressed in deeper than this
+    double wire_penetration_limit_mm = 0.2;  ///< the drive slips while the wire is pressed in deeper than this
 };
 
 /// Component of the world's entity, for benchmarks: called when a stage of the step begins, with the room's name.

@@ -17,9 +17,9 @@ struct ExpectedHash {
     std::uint64_t hash;
 };
 constexpr std::array<ExpectedHash, 3> expected_hashes{{
-    {"tube_wire", 0xf5c0d6c347ca0542},
-    {"tube_catheter", 0x36c1251b988fe1ae},
-    {"fork", 0x0e29d78e401bdfc2},
+    {"tube_wire", 0x4382bd84d2447146},
+    {"tube_catheter", 0xfed34fe0a857a3da},
+    {"fork", 0x6c9fc35ec6823c87},
 }};
 
 constexpr int steps = 150;
