@@ -16,8 +16,8 @@ struct DeviceSample {
     Vec3 arm = Vec3::Zero();  ///< from the link's centre to the sample's centre, mm, world
     double friction = 0.1;    ///< Coulomb coefficient against the wall, >= 0
     Index hint = -1;          ///< triangle to start from; -1 = what the set remembers of this sample
-    int walls = 0;            ///< rows at most, 0 = as the set's settings say; the front end of a device meets several walls
-    bool kinematic = false;   ///< the device does not give way (steerable catheter): solve_kinematic takes its rows
+    int walls = 0;  ///< rows at most, 0 = as the set's settings say; the front end of a device meets several walls
+    bool kinematic = false;  ///< the device does not give way (steerable catheter): solve_kinematic takes its rows
     Vec3 previous = Vec3::Zero();  ///< position at the beginning of the substep, mm, world
     Vec3 rotation = Vec3::Zero();  ///< rotation vector of the link since the beginning of the substep, rad, world: a
                                    ///< turning wire rubs on the wall

@@ -1,9 +1,9 @@
 // sin, cos, exp and their kin from +, -, *, / and sqrt alone.  The C library picks another variant on another processor
 // (fused multiply-add or not), and the last bit of such a result would reach a state hash; these give the same bits
 // anywhere.
-// Accuracy for |x| < 1e5: 2 ulp (sin, cos, exp, log, atan), 4 ulp (tan, asin, acos, atan2), 1e-14 (pow); next to its far
-// zeros the error of sin and cos is absolute, 4e-16.
-// Arguments that are not finite give NaN (exp: +inf gives +inf, -inf gives 0).
+// Accuracy for |x| < 1e5: 2 ulp (sin, cos, exp, log, atan), 4 ulp (tan, asin, acos, atan2), 1e-14 (pow); next to its
+// far zeros the error of sin and cos is absolute, 4e-16. Arguments that are not finite give NaN (exp: +inf gives +inf,
+// -inf gives 0).
 #pragma once
 
 #include "core/types.h"

@@ -16,7 +16,7 @@ struct StepSettings {
     double contact_margin_mm = 1.5;          ///< rows are made for samples nearer to the wall than this
     double sample_spacing_mm = 1.25;         ///< of contact samples along the guidewire
     double force_filter_s = 0.2;             ///< mean filter of the force bar
-    double wire_contact_limit_mn = 1000.0;    ///< ... or while one of its contacts carries more than this
+    double wire_contact_limit_mn = 1000.0;   ///< ... or while one of its contacts carries more than this
     double wire_penetration_limit_mm = 0.2;  ///< the drive slips while the wire is pressed in deeper than this
 };
 
