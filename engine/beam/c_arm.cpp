@@ -1,23 +1,13 @@
 #include "beam/c_arm.h"
 
-#include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "core/deterministic_math.h"
+#include "core/range.h"
 #include "core/units.h"
 
 namespace cathlab {
 namespace {
-
-void require_range(const SourcePlace& where, const std::string& key, double value, double least, double most) {
-    if (std::isfinite(value) && value >= least && value <= most) return;
-    SourcePlace place = where;
-    place.key = key;
-    std::ostringstream text;
-    text << "found " << value << ", allowed is " << least << " to " << most;
-    throw UserError(place, text.str());
-}
 
 Vec2 middle(const CArmSpec& spec) {
     return {0.5 * (spec.columns - 1), 0.5 * (spec.rows - 1)};

@@ -5,18 +5,10 @@
 #include <sstream>
 
 #include "core/deterministic_math.h"
+#include "core/range.h"
 
 namespace cathlab {
 namespace {
-
-void require_range(const SourcePlace& where, const std::string& key, double value, double least, double most) {
-    if (std::isfinite(value) && value >= least && value <= most) return;
-    SourcePlace place = where;
-    place.key = key;
-    std::ostringstream text;
-    text << "found " << value << ", allowed is " << least << " to " << most;
-    throw UserError(place, text.str());
-}
 
 FineSpectrum spectrum_at(const BeamSpec& spec, double kvp) {
     return fine_spectrum({kvp, spec.aluminium_mm, spec.copper_mm, spec.caesium_iodide_mm});

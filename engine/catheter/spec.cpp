@@ -1,21 +1,8 @@
 #include "catheter/spec.h"
 
-#include <cmath>
-#include <sstream>
+#include "core/range.h"
 
 namespace cathlab {
-namespace {
-
-void require_range(const SourcePlace& where, const std::string& key, double value, double least, double most) {
-    if (std::isfinite(value) && value >= least && value <= most) return;
-    SourcePlace place = where;
-    place.key = key;
-    std::ostringstream text;
-    text << "found " << value << ", allowed is " << least << " to " << most;
-    throw UserError(place, text.str());
-}
-
-}  // namespace
 
 double CatheterSpec::steerable_length_mm() const {
     double length = tip_length_mm;

@@ -5,9 +5,9 @@
 #include <limits>
 #include <numeric>
 #include <queue>
-#include <sstream>
 
 #include "core/check.h"
+#include "core/range.h"
 #include "core/units.h"
 
 namespace cathlab {
@@ -19,15 +19,6 @@ std::size_t at(Index i) {
 
 double cube(double x) {
     return x * x * x;
-}
-
-void require_range(const SourcePlace& where, const std::string& key, double value, double least, double most) {
-    if (std::isfinite(value) && value >= least && value <= most) return;
-    SourcePlace place = where;
-    place.key = key;
-    std::ostringstream text;
-    text << "found " << value << ", allowed is " << least << " to " << most;
-    throw UserError(place, text.str());
 }
 
 // Shortest distance from the root, and the neighbour it comes by.

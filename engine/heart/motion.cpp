@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/deterministic_math.h"
+#include "core/range.h"
 
 namespace cathlab {
 namespace {
@@ -15,10 +16,6 @@ namespace {
     std::ostringstream text;
     text << "found " << found << ", allowed is " << allowed;
     throw UserError(place, text.str());
-}
-
-bool within(double x, double least, double most) {
-    return std::isfinite(x) && x >= least && x <= most;
 }
 
 double wrap(double phase) {
@@ -47,19 +44,18 @@ std::vector<HeartKnot> HeartSpec::default_knots(double excursion_mm) {
 }
 
 void validate(const HeartSpec& spec, const SourcePlace& where) {
-    if (!within(spec.rate_bpm, 20.0, 250.0)) wrong(where, "rate_bpm", spec.rate_bpm, "20 to 250");
-    if (!within(spec.radius_mm, 1.0, 60.0)) wrong(where, "radius_mm", spec.radius_mm, "1 to 60");
-    if (!within(spec.height_mm, 1.0, 200.0)) wrong(where, "height_mm", spec.height_mm, "1 to 200");
-    if (!within(spec.rest_gap_mm, 0.0, 50.0)) wrong(where, "rest_gap_mm", spec.rest_gap_mm, "0 to 50");
-    if (!within(spec.initial_phase, 0.0, 1.0)) wrong(where, "initial_phase", spec.initial_phase, "0 to 1");
+    require_range(where, "rate_bpm", spec.rate_bpm, 20.0, 250.0);
+    require_range(where, "radius_mm", spec.radius_mm, 1.0, 60.0);
+    require_range(where, "height_mm", spec.height_mm, 1.0, 200.0);
+    require_range(where, "rest_gap_mm", spec.rest_gap_mm, 0.0, 50.0);
+    require_range(where, "initial_phase", spec.initial_phase, 0.0, 1.0);
     if (!spec.tilt_rad.allFinite()) wrong(where, "tilt_rad", spec.tilt_rad.sum(), "three finite numbers");
     if (spec.knots.size() < 2) wrong(where, "knots", static_cast<double>(spec.knots.size()), "two knots or more");
     double before = -1.0;
     for (const HeartKnot& knot : spec.knots) {
-        if (!within(knot.phase, 0.0, 1.0) || knot.phase >= 1.0 || knot.phase <= before)
+        if (!(knot.phase >= 0.0 && knot.phase < 1.0 && knot.phase > before))
             wrong(where, "knots: phase", knot.phase, "increasing from knot to knot, from 0 to below 1");
-        if (!within(knot.displacement_mm, -30.0, 30.0))
-            wrong(where, "knots: displacement_mm", knot.displacement_mm, "-30 to 30");
+        require_range(where, "knots: displacement_mm", knot.displacement_mm, -30.0, 30.0);
         before = knot.phase;
     }
 }

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/check.h"
 #include "core/log.h"
+#include "core/range.h"
 
 using namespace cathlab;
 
@@ -24,6 +27,21 @@ TEST(Errors, SayWhereAsFarAsItIsKnown) {
     EXPECT_STREQ(UserError({"scene.toml", 0, ""}, "is empty").what(), "scene.toml: is empty");
     EXPECT_TRUE(UserError("no such job", true).wrong_use());
     EXPECT_FALSE(UserError("no such file").wrong_use());
+}
+
+TEST(Errors, ANumberOutsideItsRangeIsNamedWithWhatIsAllowed) {
+    const SourcePlace where{"device.toml", 7, "segments"};
+    EXPECT_NO_THROW(require_range(where, "length_mm", 1.0, 1.0, 300.0));
+    EXPECT_NO_THROW(require_range(where, "length_mm", 300.0, 1.0, 300.0));
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double bad : {0.5, 301.0, nan, std::numeric_limits<double>::infinity()})
+        EXPECT_THROW(require_range(where, "length_mm", bad, 1.0, 300.0), UserError) << bad;
+    try {
+        require_range(where, "length_mm", -2.5, 1.0, 300.0);
+        FAIL();
+    } catch (const UserError& e) {
+        EXPECT_STREQ(e.what(), "device.toml:7: length_mm: found -2.5, allowed is 1 to 300");
+    }
 }
 
 TEST(Errors, ListWhatIsAllowed) {
