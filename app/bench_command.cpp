@@ -106,7 +106,7 @@ void bench(const BenchOptions& options, const AppContext& context) {
     std::unique_ptr<Film> film;
     if (options.pictures)
         film = std::make_unique<Film>(scene, FilmOptions{"", scene.video.width, scene.video.height, scene.video.fps},
-                                      options.threads);
+                                      false);
     catch_stop_signals();
     Progress progress("benchmark");
     const Input base = session.base_input();
@@ -143,7 +143,7 @@ void add_bench_command(CLI::App& app, AppContext& context) {
     command->add_option("--seconds", options->seconds, "simulated time")
         ->check(CLI::Range(0.02, 3600.0))
         ->capture_default_str();
-    command->add_option("--threads", options->threads, "for the step and the pictures")
+    command->add_option("--threads", options->threads, "for the step; a picture is drawn on one")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
     command->add_flag("--json", options->json, "As JSON");

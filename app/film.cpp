@@ -1,12 +1,13 @@
 #include "film.h"
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 
 #include "describe_frame.h"
+#include "film_queue.h"
 #include "hud/hud.h"
 #include "hud_fill.h"
-#include "imaging/video_writer.h"
 #include "render/frame_renderer.h"
 
 namespace cathlab {
@@ -14,35 +15,47 @@ namespace {
 
 constexpr std::size_t message_lines = 4;
 constexpr double message_s = 4.0;
+constexpr std::size_t queue_slots = 4;  // pictures that a slow moment of the film may lag behind
 
 }  // namespace
 
+ThreadShares share_threads(int threads, bool with_film) {
+    if (!with_film || threads < 2) return {threads, false};
+    return {threads - 1, true};
+}
+
 struct Film::Impl {
-    Impl(const SceneSpec& the_scene, const FilmOptions& the_options, int threads)
+    Impl(const SceneSpec& the_scene, const FilmOptions& the_options, bool apart)
         : scene(the_scene),
           options(the_options),
-          hud(static_cast<float>(the_options.height) / 512.0F),
-          renderer(make_gl_target(), Workers(threads)) {
-        if (!options.path.empty()) writer.emplace(options.path, options.width, options.height, options.fps);
-        frame.width = options.width;
-        frame.height = options.height;
-        frame.seed = scene.seed;
+          hud(std::clamp(static_cast<float>(the_options.height) / 512.0F, 0.5F, 4.0F)),
+          queue(the_options, apart, queue_slots) {}
+
+    void lay_out(FrameDescription& frame, const Channels& channels) {
+        fill_hud(scene, channels, panels);
+        while (!messages.empty() && messages.front().time_s < channels.time_s - message_s) messages.pop_front();
+        panels.messages.clear();
+        for (const Event& event : messages) panels.messages.push_back(event.message);
+        HudLayout layout;
+        layout.width = static_cast<float>(options.width);
+        layout.height = static_cast<float>(options.height);
+        const FrameRect left = layout_of(frame).fluoroscopy;
+        layout.split = static_cast<float>(left.x + left.width);
+        hud.draw(panels, layout, frame.overlay);
     }
 
     SceneSpec scene;
     FilmOptions options;
-    Hud hud;
-    FrameRenderer renderer;
-    std::optional<VideoWriter> writer;
-    FrameDescription frame;
+    Hud hud;  // on the caller's thread: ImGui has one current context in a process
+    FilmQueue queue;
+    std::optional<FrameCamera> camera;  // of the picture before
     HudData panels;
     std::deque<Event> messages;
-    Image8 picture;
     std::size_t count = 0;
 };
 
-Film::Film(const SceneSpec& scene, const FilmOptions& options, int threads)
-    : impl_(std::make_unique<Impl>(scene, options, threads)) {}
+Film::Film(const SceneSpec& scene, const FilmOptions& options, bool apart)
+    : impl_(std::make_unique<Impl>(scene, options, apart)) {}
 
 Film::~Film() = default;
 
@@ -52,21 +65,17 @@ bool Film::due(double time_s) const {
 
 void Film::add(World& world, const Channels& channels) {
     Impl& m = *impl_;
-    describe_frame(world, m.scene, channels, m.frame);
-    m.frame.frame_index = m.count;
-    fill_hud(m.scene, channels, m.panels);
-    while (!m.messages.empty() && m.messages.front().time_s < channels.time_s - message_s) m.messages.pop_front();
-    m.panels.messages.clear();
-    for (const Event& event : m.messages) m.panels.messages.push_back(event.message);
-    HudLayout layout;
-    layout.width = static_cast<float>(m.options.width);
-    layout.height = static_cast<float>(m.options.height);
-    const FrameRect left = layout_of(m.frame).fluoroscopy;
-    layout.split = static_cast<float>(left.x + left.width);
-    m.hud.draw(m.panels, layout, m.frame.overlay);
-    m.renderer.render(m.frame, m.picture);
-    if (m.writer) m.writer->add(m.picture);
+    FrameDescription& frame = m.queue.next();
+    frame.width = m.options.width;
+    frame.height = m.options.height;
+    frame.seed = m.scene.seed;
+    frame.frame_index = m.count;
+    frame.inner_camera = m.camera;
+    describe_frame(world, m.scene, channels, frame);
+    m.camera = frame.inner_camera;
+    m.lay_out(frame, channels);
     ++m.count;
+    m.queue.submit();
 }
 
 void Film::message(const Event& event) {
@@ -80,17 +89,24 @@ void Film::message(const Event& event) {
     if (impl_->messages.size() > message_lines) impl_->messages.pop_front();
 }
 
-const Image8& Film::last() const {
-    return impl_->picture;
+void Film::keep_poster() {
+    impl_->queue.keep_poster();
+}
+
+Image8 Film::poster() {
+    return impl_->queue.poster();
 }
 
 std::size_t Film::frames() const {
     return impl_->count;
 }
 
+bool Film::failed() const {
+    return impl_->queue.failed();
+}
+
 void Film::close() {
-    if (impl_->writer && impl_->count > 0) impl_->writer->close();
-    impl_->writer.reset();
+    impl_->queue.close();
 }
 
 }  // namespace cathlab

@@ -1,43 +1,55 @@
 // The film of a run: a picture of the world at equal intervals of simulated time.
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <string>
 
 #include "core/channels.h"
 #include "core/event.h"
 #include "imaging/image.h"
 #include "scene/scene_spec.h"
+#include "studio.h"
 #include "world/world.h"
 
 namespace cathlab {
 
-struct FilmOptions {
-    std::string path;  ///< "" = no film, pictures alone (for a benchmark)
-    int width = 1024;
-    int height = 512;
-    double fps = 15.0;
+/// How the threads of a command are shared out between the step and the film.
+struct ThreadShares {
+    int step = 1;
+    bool film_apart = false;  ///< the film has a thread of its own; else each picture is drawn before the next step
 };
 
+/// threads >= 1 in all.  With a film and more than one thread, one of them is the film's: a picture costs less than the
+/// time until the next is due, so it never needs more.
+ThreadShares share_threads(int threads, bool with_film);
+
+/// Pictures are described by the caller's thread (a snapshot of what the renderer needs) and drawn and encoded either
+/// there or on a thread of their own, behind a short queue.  No picture is ever dropped: where the queue is full, add()
+/// waits.  The pictures are the same either way, whatever the threads' timing.
 class Film {
 public:
-    /// Throws UserError: no off-screen GL, no encoder, an unwritable folder, an odd size.
-    Film(const SceneSpec& scene, const FilmOptions& options, int threads);
+    /// apart: on a thread of its own.  Throws UserError: no off-screen GL, no encoder, an unwritable folder, an odd
+    /// size.
+    Film(const SceneSpec& scene, const FilmOptions& options, bool apart);
+    /// Without close() before it: the film is given up.
     ~Film();
     Film(const Film&) = delete;
     Film& operator=(const Film&) = delete;
 
     /// Whether a picture is due after the step that ended at `time_s`.
     bool due(double time_s) const;
-    /// Draws the world as it stands and appends the picture.
+    /// Takes a picture of the world as it stands.  Throws what stopped the film, be it this picture or an earlier one.
     void add(World& world, const Channels& channels);
     /// Keeps an event for the message lines.
     void message(const Event& event);
-    /// The last picture; empty before the first.
-    const Image8& last() const;
+    /// The last picture so far becomes the poster.
+    void keep_poster();
+    /// The poster, or the last picture where none was kept; waits until it is drawn.  Throws what stopped the film.
+    Image8 poster();
+    /// Pictures taken so far.
     std::size_t frames() const;
-    /// Closes the film; it then holds all pictures so far (none: nothing is written).
+    /// Whether an error stopped the film: it has been thrown, or the next call will throw it.
+    bool failed() const;
+    /// Closes the film; it then holds all pictures so far (none: nothing is written).  Throws UserError.
     void close();
 
 private:

@@ -84,12 +84,14 @@ void replay(const ReplayOptions& options, AppContext& context) {
     const SceneSpec scene = recorded_scene(run, context);
     std::optional<Verifier> verifier;
     if (options.verify) verifier.emplace(run);
-    Session session(scene, run.manifest.seed, options.threads, context);
+    const bool filmed = !options.film.video.empty() && options.film.video != "none";
+    const ThreadShares threads = share_threads(options.threads, filmed);
+    Session session(scene, run.manifest.seed, threads.step, context);
     if (session.anatomy_hash() != run.manifest.anatomy_hash)
         throw UserError(options.folder + ": the anatomy is built otherwise than when this run was recorded");
     std::unique_ptr<Film> film;
-    if (!options.film.video.empty() && options.film.video != "none")
-        film = std::make_unique<Film>(scene, film_options(options.film, scene, options.film.video), options.threads);
+    if (filmed)
+        film = std::make_unique<Film>(scene, film_options(options.film, scene, options.film.video), threads.film_apart);
     catch_stop_signals();
     Progress progress("replaying");
     std::int64_t k = 0;
@@ -128,7 +130,7 @@ void add_replay_command(CLI::App& app, AppContext& context) {
     command->add_option("--size", options->film.size, "of the film, WxH; else the scene's");
     command->add_option("--fps", options->film.fps, "pictures a second of simulated time; else the scene's")
         ->check(CLI::Range(1.0, 120.0));
-    command->add_option("--threads", options->threads, "for the step and the pictures")
+    command->add_option("--threads", options->threads, "in all; from 2 on one of them draws the film")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
     command->callback([options, &context] { replay(*options, context); });

@@ -105,7 +105,7 @@ private:
         video_ = options.film.video.empty() ? folder_ + "/fluoro.mp4" : options.film.video;
         try {
             return std::make_unique<Film>(session.scene(), film_options(options.film, session.scene(), video_),
-                                          options.threads);
+                                          share_threads(options.threads, true).film_apart);
         } catch (...) {
             std::error_code not_empty;
             std::filesystem::remove(folder_, not_empty);
@@ -152,23 +152,33 @@ private:
         for (const Event& event : session_.events()) film_->message(event);
         while (film_->due(session_.channels().time_s)) film_->add(session_.world(), session_.channels());
         // The poster comes from the later part of a run, where the devices have arrived.
-        if (done_ * 4 == steps_ * 3) poster_ = film_->last();
+        if (done_ * 4 == steps_ * 3) film_->keep_poster();
     }
     void finish(bool complete) {
         if (finished_) return;
         finished_ = true;
-        wall_s_ = seconds_since(begin_);
         if (done_ > 0) writer_.hash(done_, session_.world().state_hash());
         if (!metrics_.empty()) writer_.file("metrics.json", metrics_json(metrics_.result()));
-        if (film_ && film_->frames() > 0) {
-            write_png(folder_ + "/poster.png", poster_.rgb.empty() ? film_->last() : poster_);
-            film_->close();
-        } else {
+        std::exception_ptr film_failure;  // a film that cannot be finished must not leave the logs open
+        try {
+            finish_film();
+        } catch (...) {
+            film_failure = std::current_exception();
             video_.clear();
         }
+        wall_s_ = seconds_since(begin_);
         const std::filesystem::path video(video_);
         const bool inside = video.parent_path() == std::filesystem::path(folder_);
-        writer_.finish(done_, complete, wall_s_, inside ? video.filename().string() : video_);
+        writer_.finish(done_, complete && !film_failure, wall_s_, inside ? video.filename().string() : video_);
+        if (film_failure) std::rethrow_exception(film_failure);
+    }
+    void finish_film() {
+        if (!film_ || film_->failed() || film_->frames() == 0) {
+            video_.clear();
+            return;
+        }
+        write_png(folder_ + "/poster.png", film_->poster());
+        film_->close();
     }
 
     Session& session_;
@@ -180,7 +190,6 @@ private:
     std::unique_ptr<Film> film_;
     RunWriter writer_;
     MetricsAccumulator metrics_;
-    Image8 poster_;
     Clock::time_point begin_ = Clock::now();
     double wall_s_ = 0.0;
     bool finished_ = false;
@@ -194,7 +203,8 @@ void run(RunOptions options, AppContext& context) {
     const Script script = options.script.empty() ? Script() : Script::load(options.script);
     film_options(options.film, scene, "");  // a wrong size is told before the world is built
     check_run_folder(options.out, options.force);
-    Session session(scene, options.seed.value_or(scene.seed), options.threads, context);
+    const bool filmed = options.film.video != "none";
+    Session session(scene, options.seed.value_or(scene.seed), share_threads(options.threads, filmed).step, context);
     catch_stop_signals();
     Recording recording(options, session, script, context);
     const bool complete = recording.run();
@@ -222,7 +232,7 @@ void add_run_command(CLI::App& app, AppContext& context) {
         ->check(CLI::Range(0.001, 86400.0));
     command->add_option("--seed", options->seed, "of every random number; else the scene's")
         ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{9007199254740991}));
-    command->add_option("--threads", options->threads, "for the step and the pictures")
+    command->add_option("--threads", options->threads, "in all; from 2 on one of them draws the film")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
     command->add_option("--video", options->film.video,

@@ -185,5 +185,48 @@ TEST(Program, ABadScriptOrMeshLeavesNoRunFolder) {
     }
 }
 
+std::string bytes_of(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(Program, TheFilmIsTheSameOnAThreadOfItsOwn) {
+    const TemporaryFolder folder;
+    const std::string scene = std::string(CATHLAB_SOURCE_DIR) + "/scenes/rigs/fork.toml";
+    std::vector<std::string> films;
+    for (const char* threads : {"1", "2", "4"}) {
+        const std::string film = folder.path(std::string(threads) + ".avi");
+        const Outcome run = call("run " + scene + " --seconds 1 --size 256x128 --video " + film + " --threads " +
+                                 threads + " --out " + folder.path(threads));
+        ASSERT_EQ(run.code, 0) << run.text;
+        EXPECT_TRUE(std::filesystem::exists(folder.path(threads) + "/poster.png"));
+        films.push_back(bytes_of(film));  // FFV1 loses nothing: equal bytes are equal pictures
+    }
+    EXPECT_GT(films[0].size(), 10000U);
+    EXPECT_TRUE(films[0] == films[1]);
+    EXPECT_TRUE(films[0] == films[2]);
+}
+
+TEST(Program, AFilmThatCannotBeWrittenIsOneSentence) {
+    const TemporaryFolder folder;
+    const std::string scene = std::string(CATHLAB_SOURCE_DIR) + "/scenes/rigs/fork.toml";
+    const std::string out = folder.path("run");
+    for (const char* threads : {"1", "3"}) {
+        const std::string command = "run " + scene + " --seconds 2 --threads " + threads + " --out " + out;
+        const Outcome nowhere = call(command + " --video " + folder.path("none/film.avi"));
+        EXPECT_EQ(nowhere.code, 1);
+        EXPECT_TRUE(one_sentence(nowhere));
+        EXPECT_FALSE(std::filesystem::exists(out));
+        // No file may grow beyond 512 KiB, as on a full disk: the film's own thread comes upon it.
+        const Outcome full =
+            call(command + " --force --video " + folder.path("film.avi"), "trap '' XFSZ; ulimit -f 1024;");
+        EXPECT_EQ(full.code, 1) << full.text;
+        EXPECT_NE(full.text.find("cathlab: video '"), std::string::npos) << full.text;
+        EXPECT_FALSE(std::filesystem::exists(folder.path("film.avi")));
+        EXPECT_NE(bytes_of(out + "/manifest.json").find("\"complete\": false"), std::string::npos);
+        std::filesystem::remove_all(out);
+    }
+}
+
 }  // namespace
 }  // namespace cathlab

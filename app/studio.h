@@ -1,0 +1,43 @@
+// Where a film's pictures are drawn and encoded: the GL context and the encoder, both of the thread that made it.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "core/parallel.h"
+#include "imaging/image.h"
+#include "render/frame_description.h"
+
+namespace cathlab {
+
+struct FilmOptions {
+    std::string path;  ///< "" = no film, pictures alone (for a benchmark)
+    int width = 1024;
+    int height = 512;
+    double fps = 15.0;
+};
+
+/// One description after another -> pictures -> the film.  Make it, use it and let it go on one thread: a GL context
+/// belongs to the thread where it is current.
+class Studio {
+public:
+    /// Throws UserError: no off-screen GL, no encoder, an unwritable folder, an odd size.
+    Studio(const FilmOptions& options, const Workers& workers);
+    ~Studio();
+    Studio(const Studio&) = delete;
+    Studio& operator=(const Studio&) = delete;
+
+    /// Draws and appends a picture.  Throws UserError where the encoder stopped.
+    void add(const FrameDescription& frame);
+    /// The last picture; empty before the first.
+    const Image8& last() const;
+    /// Closes the film; it then holds all pictures so far (none: nothing is written).  Throws UserError.
+    void close();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cathlab
