@@ -124,6 +124,7 @@ Table<SceneSpec>& add_effects(Table<SceneSpec>& scene) {
         f.doc = std::string(info.doc);
         f.sub = std::make_shared<const TableSpec>(
             Table<SceneEffect>(f.doc)
+        f.unlisted = info.for_tests;
                 .boolean("enabled", &SceneEffect::enabled,
                          "switches the effect off when false; naming it switches it on")
                 .parameters(info.parameters, &SceneEffect::values)

@@ -149,10 +149,12 @@ void read_tables(const TomlNode& node, const FieldSpec& f, void* object, const P
 void read_table(const TomlNode& node, const TableSpec& spec, void* object, const PathResolver& resolve,
                 const std::string& section) {
     const std::string prefix = section.empty() ? "" : "[" + section + "] ";
-    std::vector<std::string> known;
-    for (const FieldSpec& f : spec.fields) known.push_back(f.key);
     for (const auto& [key, value] : node.members) {
-        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        if (std::any_of(spec.fields.begin(), spec.fields.end(), [&](const FieldSpec& f) { return f.key == key; }))
+            continue;
+        std::vector<std::string> known;
+        for (const FieldSpec& f : spec.fields)
+            if (!f.unlisted) known.push_back(f.key);
         const SourcePlace where{value.file ? *value.file : "", value.key_line, prefix + key};
         throw UserError(where, "no such key" + did_you_mean(key, known) +
                                    (nearest_name(key, known).empty() ? "; " : " ") +

@@ -83,6 +83,7 @@ struct FieldSpec {
     std::vector<std::string> choices;  ///< of a choice
     std::string library;               ///< of a path: folder of the data root in which a bare name is looked up
     bool required = false;
+    bool unlisted = false;  ///< allowed, but not named among the known keys of an error
 
     std::function<void(void* object, const FieldValue& value)> store;
     std::function<FieldValue(const void* object)> load;  ///< for defaults in the schema and the docs

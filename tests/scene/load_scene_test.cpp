@@ -110,6 +110,8 @@ TEST_F(LoadScene, WhatKeysMustSayTogetherIsChecked) {
     EXPECT_NE(error_of(base + "[heart]\nprofile = [[0, 1], [0, 2]]\n").find("phases must rise"), std::string::npos);
     EXPECT_NE(error_of(base + "[video]\nwidth = 301\n").find("must be even"), std::string::npos);
     EXPECT_NE(error_of(base + "[effects.respirtion]\n").find("did you mean 'respiration'?"), std::string::npos);
+    EXPECT_EQ(error_of(base + "[effects.respirtion]\n").find("test_"), std::string::npos) << "they are for tests alone";
+    EXPECT_NO_THROW(load(base + "[effects.test_force]\n"));
     EXPECT_NE(error_of(base + "[effects.respiration]\nperiod_s = 0\n").find("[effects.respiration] period_s: found 0"),
               std::string::npos);
     EXPECT_NE(error_of("schema = 1\n[anatomy]\nmesh = 'x.obj'\n").find("no such file 'x.obj'"), std::string::npos);
