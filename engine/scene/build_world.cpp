@@ -15,6 +15,7 @@
 #include "rod/rod.h"
 #include "scene/anatomy_file.h"
 #include "scene/device_file.h"
+#include "scene/flow_root.h"
 #include "softbody/binding.h"
 #include "softbody/solver.h"
 #include "softbody/wall_sample.h"
@@ -167,21 +168,6 @@ void add_catheter(World& world, const SceneSpec& spec, const AnatomyModel& anato
     world.add(e, std::move(catheter));
 }
 
-// Where the heart's output enters the tree: the annulus, or the widest end of an imported mesh.
-Index flow_root(const AnatomyModel& anatomy) {
-    const CentrelineGraph& graph = anatomy.centreline;
-    if (anatomy.annulus) return graph.nearest(anatomy.annulus->pose.position);
-    const auto neighbours = graph.adjacency();
-    Index widest = 0;
-    double radius = 0.0;
-    for (std::size_t i = 0; i < graph.nodes.size(); ++i)
-        if (neighbours[i].size() == 1 && graph.nodes[i].radius > radius) {
-            radius = graph.nodes[i].radius;
-            widest = static_cast<Index>(i);
-        }
-    return widest;
-}
-
 Shared<BodyThickness> body_thickness(const AnatomyModel& anatomy) {
     std::vector<BodySolid> solids;
     for (const ContextSolid& solid : anatomy.context) {
@@ -274,8 +260,8 @@ std::shared_ptr<const SceneModels> build_models(const SceneSpec& spec, const Bui
     ContrastSpec contrast;
     contrast.cardiac_output_ml_s = spec.contrast.aortic_flow_ml_s;
     contrast.concentration_mgi_ml = spec.contrast.iodine_mg_ml;
-    models->contrast =
-        std::make_shared<const ContrastModel>(build_contrast(anatomy->centreline, flow_root(*anatomy), contrast));
+    models->contrast = std::make_shared<const ContrastModel>(
+        build_contrast(anatomy->centreline, flow_root(*anatomy, spec.contrast), contrast));
     models->thickness = body_thickness(*anatomy);
     models->anatomy = std::move(anatomy);
     report(1.0, "ready");

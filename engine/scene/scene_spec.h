@@ -91,7 +91,9 @@ struct SceneCArm {
 /// [contrast]
 struct SceneContrast {
     double iodine_mg_ml = 320.0;
-    double aortic_flow_ml_s = 80.0;  ///< mean flow of blood that carries the bolus
+    double aortic_flow_ml_s = 80.0;          ///< mean flow of blood that carries the bolus
+    NameOrPoint root{"auto", Vec3::Zero()};  ///< where that flow enters: see flow_root.h
+    SourcePlace where;
 };
 
 /// [force]

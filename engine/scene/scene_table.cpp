@@ -150,7 +150,12 @@ Table<SceneSpec> make_scene_table() {
         Table<SceneContrast>("contrast medium")
             .number("iodine_mg_ml", &SceneContrast::iodine_mg_ml, "mg/mL", {0, 400}, "iodine in the medium")
             .number("aortic_flow_ml_s", &SceneContrast::aortic_flow_ml_s, "mL/s", {0, 500},
-                    "blood flow that carries the bolus");
+                    "blood flow that carries the bolus")
+            .name_or_point(
+                "root", &SceneContrast::root, world_mm,
+                "where that flow enters: a landmark at a free end, an entry, 'annulus', a point near an end, "
+                "or 'auto' for the annulus or else the widest end")
+            .place(&SceneContrast::where);
     const auto force = Table<SceneForce>("the force bar")
                            .number("filter_s", &SceneForce::filter_s, "s", {0, 10}, "length of its mean filter");
     const auto video = Table<SceneVideo>("the film of a run; the command line may say otherwise")
