@@ -66,6 +66,7 @@ bool Film::due(double time_s) const {
 void Film::add(World& world, const Channels& channels) {
     Impl& m = *impl_;
     FrameDescription& frame = m.queue.next();
+    if (m.options.probe) m.options.probe("describe");
     frame.width = m.options.width;
     frame.height = m.options.height;
     frame.seed = m.scene.seed;
@@ -73,6 +74,7 @@ void Film::add(World& world, const Channels& channels) {
     frame.inner_camera = m.camera;
     describe_frame(world, m.scene, channels, frame);
     m.camera = frame.inner_camera;
+    if (m.options.probe) m.options.probe("panels");
     m.lay_out(frame, channels);
     ++m.count;
     m.queue.submit();

@@ -8,13 +8,16 @@
 namespace cathlab {
 
 struct Studio::Impl {
-    Impl(const FilmOptions& options, const Workers& workers) : renderer(make_gl_target(), workers) {
+    Impl(const FilmOptions& options, const Workers& workers)
+        : renderer(make_gl_target(), workers), probe(options.probe) {
+        renderer.set_probe(probe);
         if (!options.path.empty()) writer.emplace(options.path, options.width, options.height, options.fps);
     }
 
     FrameRenderer renderer;
     std::optional<VideoWriter> writer;
     Image8 picture;
+    std::function<void(std::string_view)> probe;
     bool empty = true;
 };
 
@@ -24,7 +27,9 @@ Studio::~Studio() = default;
 
 void Studio::add(const FrameDescription& frame) {
     impl_->renderer.render(frame, impl_->picture);
+    if (impl_->probe) impl_->probe(impl_->writer ? "encoder" : "");
     if (impl_->writer) impl_->writer->add(impl_->picture);
+    if (impl_->probe) impl_->probe("");
     impl_->empty = false;
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "core/parallel.h"
 #include "imaging/image.h"
@@ -16,6 +18,7 @@ struct FilmOptions {
     int width = 1024;
     int height = 512;
     double fps = 15.0;
+    std::function<void(std::string_view part)> probe = {};  ///< called as each part of a picture begins, "" as it ends
 };
 
 /// One description after another -> pictures -> the film.  Make it, use it and let it go on one thread: a GL context

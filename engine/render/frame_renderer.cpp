@@ -35,6 +35,11 @@ struct FrameRenderer::Impl {
     InnerView inner_view;
     Overlay overlay;
     Image8 part;
+    std::function<void(std::string_view)> probe;
+
+    void begin(std::string_view name) const {
+        if (probe) probe(name);
+    }
 };
 
 FrameRenderer::FrameRenderer(std::unique_ptr<GlTarget> target, const Workers& workers)
@@ -50,6 +55,7 @@ void FrameRenderer::render(const FrameDescription& frame, Image8& out) {
     const FrameLayout layout = layout_of(frame);
     std::fill(out.rgb.begin(), out.rgb.end(), std::uint8_t{0});
     if (layout.fluoroscopy.width > 0) {
+        impl_->begin("fluoroscopy");
         const FrameRect& r = layout.fluoroscopy;
         const std::vector<std::uint8_t>& grey = impl_->fluoroscope.draw(frame, r.width, r.height);
         for (int y = 0; y < r.height; ++y) {
@@ -59,9 +65,11 @@ void FrameRenderer::render(const FrameDescription& frame, Image8& out) {
         }
     }
     if (layout.inner_view.width > 0) {
+        impl_->begin("inner view");
         impl_->inner_view.draw(frame, layout.inner_view.width, layout.inner_view.height, impl_->part);
         paste(out, impl_->part, layout.inner_view.x, layout.inner_view.y);
     }
+    impl_->begin("overlay");
     impl_->overlay.draw(frame.overlay, out);
 }
 
@@ -76,6 +84,9 @@ void FrameRenderer::reset() {
 }
 std::string FrameRenderer::description() const {
     return impl_->device->description();
+}
+void FrameRenderer::set_probe(std::function<void(std::string_view)> begin) {
+    impl_->probe = std::move(begin);
 }
 
 }  // namespace cathlab

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "core/parallel.h"
 #include "imaging/image.h"
@@ -41,6 +43,8 @@ public:
     /// Forgets the last frames (temporal filter, held image): the start of another run.
     void reset();
     std::string description() const;
+    /// Called in render() as each part begins ("fluoroscopy", "inner view", "overlay"), for measuring.
+    void set_probe(std::function<void(std::string_view part)> begin);
 
 private:
     struct Impl;
