@@ -69,6 +69,44 @@ ViewKey context_key(const FrameDescription& f, int width, int height) {
     return key;
 }
 
+// Beer-Lambert of many pixels' bins at once: transmission * exp(-exponent) in place of the exponent.
+void attenuate(const float* transmission, std::size_t count, float* __restrict exponent) {
+    for (std::size_t n = 0; n < count; ++n) exponent[n] = transmission[n] * fast_exp(-exponent[n]);
+}
+
+// log of the intensity relative to the wanted one, less a share of the coarse picture.
+void to_log(const float* history, const float* coarse, float unit, float even, float mean, std::size_t count,
+            float* __restrict out) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const float relative = history[i] * unit;
+        out[i] = fast_log(relative > 0.004F ? relative : 0.004F) - even * (coarse[i] - mean);
+    }
+}
+
+// The row with its edges enhanced, as grey in [0, 255].  padded: one more value at each end.
+void sharpen(const float* padded, const float* above, const float* below, float edge, float scale, float offset,
+             std::size_t count, float* __restrict out) {
+    for (std::size_t x = 0; x < count; ++x) {
+        const float here = padded[x + 1];
+        const float sharp = here + edge * (4.0F * here - padded[x] - padded[x + 2] - above[x] - below[x]);
+        const float value = offset + scale * sharp + 0.5F;
+        const float low = value < 0.0F ? 0.0F : value;
+        out[x] = low > 255.0F ? 255.0F : low;
+    }
+}
+
+// Pixels that wait for their exponentials, which are cheaper for many at a time.
+struct Batch {
+    std::vector<std::size_t> pixel;
+    std::vector<BinValues> exponent, transmission;
+
+    BinValues& add(std::size_t i) {
+        pixel.push_back(i);
+        return exponent.emplace_back();
+    }
+    bool full() const { return pixel.size() == 256; }
+};
+
 }  // namespace
 
 struct Fluoroscope::Impl {
@@ -148,7 +186,8 @@ struct Fluoroscope::Impl {
     void combine();
     void detect(const FrameDescription& f, const Projection& projection);
     void display(const FrameExposure& e);
-    float at_pixel(std::size_t i, const float* device_length) const;
+    void add_exponent(std::size_t i, BinValues& exponent) const;
+    void attenuate_pixels(Batch& batch);
 };
 
 void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection& projection) {
@@ -238,9 +277,9 @@ void Fluoroscope::Impl::draw_lumen(const FrameDescription& f, const Projection& 
     buffer.set_vertices(*lumen, f.lumen.vertices, f.lumen.contrast_mg_ml);
     buffer.draw(projection, {lumen.get()}, lengths);
     bad += lengths.bad_pixels;
-    moving.emplace_back(lengths.length_mm, difference(*beam, f.lumen.material, around));
+    moving.emplace_back(std::move(lengths.length_mm), difference(*beam, f.lumen.material, around));
     if (!lengths.contrast_mm_mg_ml.values.empty()) {
-        moving.emplace_back(lengths.contrast_mm_mg_ml, beam->iodine());
+        moving.emplace_back(std::move(lengths.contrast_mm_mg_ml), beam->iodine());
     }
     if (!has_wall) return;
     const std::size_t n = f.lumen.vertices.size();
@@ -272,20 +311,25 @@ void Fluoroscope::Impl::draw_all_devices(const FrameDescription& f, const Projec
     draw_devices(pieces, static_cast<int>(device_mu.size()), projection, device_samples, workers, devices);
 }
 
-float Fluoroscope::Impl::at_pixel(std::size_t i, const float* device_length) const {
-    BinValues exponent{};
+void Fluoroscope::Impl::add_exponent(std::size_t i, BinValues& exponent) const {
     for (const auto& [length, mu] : moving) {
         const float l = length.values[i];
         for (std::size_t k = 0; k < energy_bins; ++k) exponent[k] += mu[k] * l;
     }
-    if (device_length != nullptr) {
-        for (std::size_t m = 0; m < device_mu.size(); ++m) {
-            for (std::size_t k = 0; k < energy_bins; ++k) exponent[k] += device_mu[m][k] * device_length[m];
-        }
+}
+
+void Fluoroscope::Impl::attenuate_pixels(Batch& batch) {
+    const std::size_t count = batch.pixel.size();
+    batch.transmission.resize(count);
+    for (std::size_t n = 0; n < count; ++n) batch.transmission[n] = transmission[batch.pixel[n]];
+    attenuate(batch.transmission.data()->data(), count * energy_bins, batch.exponent.data()->data());
+    for (std::size_t n = 0; n < count; ++n) {
+        float sum = 0;
+        for (const float bin : batch.exponent[n]) sum += bin;
+        intensity.values[batch.pixel[n]] = sum + scatter.values[batch.pixel[n]];
     }
-    float sum = 0;
-    for (std::size_t k = 0; k < energy_bins; ++k) sum += transmission[i][k] * fast_exp(-exponent[k]);
-    return sum;
+    batch.pixel.clear();
+    batch.exponent.clear();
 }
 
 void Fluoroscope::Impl::combine() {
@@ -294,18 +338,33 @@ void Fluoroscope::Impl::combine() {
     intensity.height = context_intensity.height;
     intensity.values.resize(count);
     workers.for_ranges(count, 8192, [&](std::size_t begin, std::size_t end) {
+        Batch batch;
         for (std::size_t i = begin; i < end; ++i) {
             bool touched = false;
             for (const auto& [length, mu] : moving) touched = touched || length.values[i] != 0.0F;
-            intensity.values[i] = (touched ? at_pixel(i, nullptr) : context_intensity.values[i]) + scatter.values[i];
+            if (touched) {
+                add_exponent(i, batch.add(i));
+                if (batch.full()) attenuate_pixels(batch);
+            } else {
+                intensity.values[i] = context_intensity.values[i] + scatter.values[i];
+            }
         }
+        if (!batch.pixel.empty()) attenuate_pixels(batch);
     });
     const auto media = static_cast<std::size_t>(devices.media);
     workers.for_ranges(devices.pixel.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        Batch batch;
         for (std::size_t d = begin; d < end; ++d) {
             const std::size_t i = devices.pixel[d];
-            intensity.values[i] = at_pixel(i, devices.length_mm.data() + d * media) + scatter.values[i];
+            BinValues& exponent = batch.add(i);
+            add_exponent(i, exponent);
+            for (std::size_t m = 0; m < media; ++m) {
+                const float length = devices.length_mm[d * media + m];
+                for (std::size_t k = 0; k < energy_bins; ++k) exponent[k] += device_mu[m][k] * length;
+            }
+            if (batch.full()) attenuate_pixels(batch);
         }
+        if (!batch.pixel.empty()) attenuate_pixels(batch);
     });
 }
 
@@ -338,29 +397,27 @@ void Fluoroscope::Impl::display(const FrameExposure& e) {
     const auto even = static_cast<float>(e.harmonisation);
     // The wanted kerma makes the measuring field's middle (the mean of its logarithms) grey `level`.
     const auto unit = static_cast<float>(reference / std::exp(coarse_mean) / photons_of_kerma);
+    // Plain pointers to plain loops: the compiler then takes several pixels at once.
     workers.for_ranges(static_cast<std::size_t>(height), 32, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin * columns; i < end * columns; ++i) {
-            const float relative = std::max(0.004F, history.values[i] * unit);
-            log_image.values[i] = fast_log(relative) - even * (coarse_log.values[i] - mean);
-        }
+        to_log(history.values.data() + begin * columns, coarse_log.values.data() + begin * columns, unit, even, mean,
+               (end - begin) * columns, log_image.values.data() + begin * columns);
     });
     const auto edge = static_cast<float>(0.25 * e.edge_enhancement);
     const auto scale = static_cast<float>(255.0 / e.window);
     const auto offset = static_cast<float>(255.0 * e.level);
     grey.resize(history.values.size());
     workers.for_ranges(static_cast<std::size_t>(height), 32, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> padded(columns + 2);
+        std::vector<float> values(columns);
         for (std::size_t y = begin; y < end; ++y) {
             const float* row = log_image.values.data() + y * columns;
             const float* above = y > 0 ? row - columns : row;
             const float* below = y + 1 < static_cast<std::size_t>(height) ? row + columns : row;
-            for (std::size_t x = 0; x < columns; ++x) {
-                const float left = row[x > 0 ? x - 1 : x];
-                const float right = row[x + 1 < columns ? x + 1 : x];
-                const float sharp = row[x] + edge * (4.0F * row[x] - left - right - above[x] - below[x]);
-                const float value = offset + scale * sharp + 0.5F;
-                grey[y * columns + x] =
-                    static_cast<std::uint8_t>(value < 0.0F ? 0.0F : (value > 255.0F ? 255.0F : value));
-            }
+            std::copy(row, row + columns, padded.begin() + 1);  // edges repeat
+            padded.front() = row[0];
+            padded.back() = row[columns - 1];
+            sharpen(padded.data(), above, below, edge, scale, offset, columns, values.data());
+            for (std::size_t x = 0; x < columns; ++x) grey[y * columns + x] = static_cast<std::uint8_t>(values[x]);
         }
     });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace cathlab {
 namespace {
 
 constexpr double near_mm = 0.15, far_mm = 400.0;  // the lens, and where no light comes back
+constexpr double clearance_mm = 0.6;  // of the camera from the wall: the near plane's corners lie 0.26 mm away
 constexpr std::size_t tube_sides = 14;
 constexpr std::size_t floats_per_vertex = 13;
 
@@ -36,6 +38,14 @@ Vec3 wall_color(double force, double limit) {
     const Vec3 tissue(0.60, 0.125, 0.085), yellow(0.95, 0.72, 0.10), alarm(0.80, 0.62, 1.0);
     const double t = std::clamp(force / std::max(1e-9, limit), 0.0, 1.0);
     return t < 0.5 ? Vec3(tissue + 2 * t * (yellow - tissue)) : Vec3(yellow + (2 * t - 1) * (alarm - yellow));
+}
+
+// The shader's square root of the linear shade -> the display's gamma of 2.2.
+std::array<std::uint8_t, 256> display_of_root() {
+    std::array<std::uint8_t, 256> out{};
+    for (std::size_t i = 0; i < out.size(); ++i)
+        out[i] = static_cast<std::uint8_t>(std::lround(255.0 * std::pow(static_cast<double>(i) / 255.0, 2.0 / 2.2)));
+    return out;
 }
 
 struct Batch {
@@ -95,6 +105,34 @@ void add_device(const FrameDevice& device, const Pose& camera, Batch& out) {
     }
 }
 
+// A camera on a tip that is pressed into the wall would stand in the wall or cut it with its near plane: it stays a
+// little inside.  The nearest vertex's tangent plane stands for the wall.
+Vec3 clear_of_wall(Vec3 camera, const std::vector<Vec3>& vertices, const std::vector<Vec3>& normals) {
+    for (int pass = 0; pass < 3 && !vertices.empty(); ++pass) {
+        std::size_t nearest = 0;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            const double d = (vertices[i] - camera).squaredNorm();
+            if (d < least) {
+                least = d;
+                nearest = i;
+            }
+        }
+        const double clear = (vertices[nearest] - camera).dot(normals[nearest]);  // normals point outward
+        if (clear >= clearance_mm) break;
+        camera -= (clearance_mm - clear) * normals[nearest];
+    }
+    return camera;
+}
+
+// Whether a triangle lies wholly on the outer side of one of the picture's four edges.
+bool outside(const Vec3& p, const Vec3& q, const Vec3& r, double slope_x, double slope_y) {
+    const double px = slope_x * p.z(), qx = slope_x * q.z(), rx = slope_x * r.z();
+    const double py = slope_y * p.z(), qy = slope_y * q.z(), ry = slope_y * r.z();
+    return (p.x() > px && q.x() > qx && r.x() > rx) || (-p.x() > px && -q.x() > qx && -r.x() > rx) ||
+           (p.y() > py && q.y() > qy && r.y() > ry) || (-p.y() > py && -q.y() > qy && -r.y() > ry);
+}
+
 }  // namespace
 
 struct InnerView::Impl {
@@ -107,16 +145,17 @@ struct InnerView::Impl {
     GlMesh mesh;
     std::unique_ptr<GlFramebuffer> buffer;
     std::vector<std::uint8_t> rgba;
+    std::array<std::uint8_t, 256> display = display_of_root();
     std::vector<Vec3> rest;  // where each vertex was first seen: the grain moves with the tissue
     std::uint64_t rest_revision = 0;
     Batch batch;
+    std::vector<std::pair<float, GLuint>> near_first;  // (a measure of distance, triangle)
 
-    void fill(const FrameDescription& frame);
+    void fill(const FrameDescription& frame, double aspect);
 };
 
-void InnerView::Impl::fill(const FrameDescription& frame) {
+void InnerView::Impl::fill(const FrameDescription& frame, double aspect) {
     const FrameLumen& lumen = frame.lumen;
-    const Pose& camera = frame.inner_camera->pose;
     const std::size_t n = lumen.vertices.size();
     if (rest.size() != n || rest_revision != lumen.topology_revision) {
         rest = lumen.vertices;
@@ -128,18 +167,34 @@ void InnerView::Impl::fill(const FrameDescription& frame) {
     if (lumen.normals.size() != n) computed = vertex_normals({lumen.vertices, lumen.triangles});
     const std::vector<Vec3>& normals = computed.empty() ? lumen.normals : computed;
 
+    Pose camera = frame.inner_camera->pose;
+    camera.position = clear_of_wall(camera.position, lumen.vertices, normals);
+    const double slope_y = std::tan(0.5 * frame.inner_camera->field_of_view_deg * units::deg);
+    const double slope_x = slope_y * aspect;
+
     // Only what the light reaches and what stands before the camera is sent to GL.
     const double reach = std::min(far_mm, 4.5 * frame.inner_camera->light_range_mm);
     std::vector<Vec3> local(n);
     for (std::size_t i = 0; i < n; ++i) local[i] = camera.to_local(lumen.vertices[i]);
-    const auto seen = [&](const Vec3& p) { return p.z() > -5.0 && p.squaredNorm() < reach * reach; };
+    const auto reached = [&](const Vec3& p) { return p.z() > -5.0 && p.squaredNorm() < reach * reach; };
+    near_first.clear();
+    for (std::size_t t = 0; t < lumen.triangles.size(); ++t) {
+        const Triangle& corners = lumen.triangles[t];
+        const Vec3& p = local[static_cast<std::size_t>(corners[0])];
+        const Vec3& q = local[static_cast<std::size_t>(corners[1])];
+        const Vec3& r = local[static_cast<std::size_t>(corners[2])];
+        if (!reached(p) && !reached(q) && !reached(r)) continue;
+        if (outside(p, q, r, slope_x, slope_y)) continue;
+        if ((q - p).cross(r - p).dot(p) <= 0.0) continue;  // its outer side: never seen from inside
+        near_first.emplace_back(static_cast<float>((p + q + r).squaredNorm()), static_cast<GLuint>(t));
+    }
+    // What is hidden is then found out before it is lit.
+    std::sort(near_first.begin(), near_first.end());
     std::vector<std::int64_t> id(n, -1);
     const Quat to_camera = camera.orientation.conjugate();
-    for (const Triangle& t : lumen.triangles) {
-        const auto a = static_cast<std::size_t>(t[0]), b = static_cast<std::size_t>(t[1]),
-                   c = static_cast<std::size_t>(t[2]);
-        if (!seen(local[a]) && !seen(local[b]) && !seen(local[c])) continue;
-        for (const std::size_t i : {a, b, c}) {
+    for (const auto& [distance, t] : near_first) {
+        for (const Index corner : lumen.triangles[t]) {
+            const auto i = static_cast<std::size_t>(corner);
             if (id[i] < 0) {
                 const double force = lumen.wall_force_n.size() == n ? lumen.wall_force_n[i] : 0.0;
                 id[i] = batch.add(local[i], to_camera * normals[i], wall_color(force, frame.wall_force_limit_n), 0.55,
@@ -161,7 +216,8 @@ void InnerView::draw(const FrameDescription& frame, int width, int height, Image
     CATHLAB_CHECK(camera.field_of_view_deg > 10 && camera.field_of_view_deg < 150, "field of view of the inner camera");
     Impl& self = *impl_;
     self.device->make_current();
-    self.fill(frame);
+    const double aspect = static_cast<double>(width) / height;
+    self.fill(frame, aspect);
 
     const GlTable& gl = self.device->gl();
     if (!self.buffer || self.buffer->width() != width || self.buffer->height() != height) {
@@ -176,7 +232,7 @@ void InnerView::draw(const FrameDescription& frame, int width, int height, Image
     gl.ClearColor(0, 0, 0, 1);
     gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     self.program.use();
-    const auto matrix = clip_matrix(camera.field_of_view_deg, static_cast<double>(width) / height);
+    const auto matrix = clip_matrix(camera.field_of_view_deg, aspect);
     gl.UniformMatrix4fv(self.program.uniform("u_clip"), 1, GL_FALSE, matrix.data());
     gl.Uniform1f(self.program.uniform("u_light_range"), static_cast<float>(camera.light_range_mm));
     self.mesh.set_vertices(self.batch.vertices);
@@ -187,7 +243,7 @@ void InnerView::draw(const FrameDescription& frame, int width, int height, Image
     self.buffer->read(0, GL_RGBA, GL_UNSIGNED_BYTE, self.rgba.data());
     self.device->check("inner view");
     for (std::size_t i = 0; i < self.rgba.size() / 4; ++i) {
-        for (std::size_t k = 0; k < 3; ++k) out.rgb[3 * i + k] = self.rgba[4 * i + k];
+        for (std::size_t k = 0; k < 3; ++k) out.rgb[3 * i + k] = self.display[self.rgba[4 * i + k]];
     }
 }
 

@@ -1,5 +1,6 @@
 #include "render/overlay.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -9,6 +10,12 @@
 #include "shader_sources.h"
 
 namespace cathlab {
+
+namespace {
+
+constexpr int tile_px = 16;
+
+}  // namespace
 
 struct Overlay::Impl {
     explicit Impl(GlDevicePtr d)
@@ -28,7 +35,10 @@ struct Overlay::Impl {
     std::shared_ptr<const DrawAtlas> atlas;  // the one in the texture
     std::vector<float> vertices;
     std::vector<std::uint8_t> rgba;
+    std::vector<std::uint8_t> painted;  // a tile of the picture: whether a triangle may have touched it
 
+    void find_painted(const HudDrawList& list, int columns, int rows);
+    void paint(const HudDrawList& list, Image8& picture);
     void use_atlas(const std::shared_ptr<const DrawAtlas>& wanted) {
         const GlTable& gl = device->gl();
         gl.ActiveTexture(GL_TEXTURE0);
@@ -43,6 +53,47 @@ struct Overlay::Impl {
         gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     }
 };
+
+void Overlay::Impl::find_painted(const HudDrawList& list, int columns, int rows) {
+    painted.assign(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0);
+    const auto tile = [](float v, int count) {
+        return std::clamp(static_cast<int>(std::floor(v / tile_px)), 0, count - 1);
+    };
+    for (std::size_t i = 0; i + 2 < list.indices.size(); i += 3) {
+        const DrawVertex &a = list.vertices[list.indices[i]], &b = list.vertices[list.indices[i + 1]],
+                         &c = list.vertices[list.indices[i + 2]];
+        const int x0 = tile(std::min({a.x, b.x, c.x}), columns), x1 = tile(std::max({a.x, b.x, c.x}), columns);
+        const int y0 = tile(std::min({a.y, b.y, c.y}), rows), y1 = tile(std::max({a.y, b.y, c.y}), rows);
+        for (int y = y0; y <= y1; ++y) {
+            const auto row = painted.begin() + static_cast<std::ptrdiff_t>(y) * columns;
+            std::fill(row + x0, row + x1 + 1, std::uint8_t{1});
+        }
+    }
+}
+
+// Over the picture, only where something was painted.
+void Overlay::Impl::paint(const HudDrawList& list, Image8& picture) {
+    const int columns = (picture.width + tile_px - 1) / tile_px, rows = (picture.height + tile_px - 1) / tile_px;
+    find_painted(list, columns, rows);
+    for (int y = 0; y < picture.height; ++y) {
+        for (int column = 0; column < columns; ++column) {
+            if (painted[static_cast<std::size_t>(y / tile_px) * static_cast<std::size_t>(columns) +
+                        static_cast<std::size_t>(column)] == 0)
+                continue;
+            const int from = column * tile_px, to = std::min(picture.width, from + tile_px);
+            std::uint8_t* below = picture.rgb.data() + picture.offset(from, y);
+            const std::uint8_t* above = rgba.data() + picture.offset(from, y) / 3 * 4;
+            for (int x = from; x < to; ++x, below += 3, above += 4) {
+                const unsigned rest = 255U - above[3];
+                if (rest == 255U) continue;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const unsigned sum = above[k] + (below[k] * rest + 127U) / 255U;
+                    below[k] = static_cast<std::uint8_t>(std::min(255U, sum));
+                }
+            }
+        }
+    }
+}
 
 Overlay::Overlay(std::shared_ptr<GlDevice> device) : impl_(std::make_unique<Impl>(std::move(device))) {}
 Overlay::~Overlay() = default;
@@ -97,15 +148,7 @@ void Overlay::draw(const HudDrawList& list, Image8& picture) {
     self.rgba.resize(picture.rgb.size() / 3 * 4);
     self.buffer->read(0, GL_RGBA, GL_UNSIGNED_BYTE, self.rgba.data());
     self.device->check("overlay");
-    for (std::size_t i = 0; i < self.rgba.size() / 4; ++i) {
-        const unsigned rest = 255U - self.rgba[4 * i + 3];
-        if (rest == 255U) continue;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const unsigned below = picture.rgb[3 * i + k];
-            const unsigned sum = self.rgba[4 * i + k] + (below * rest + 127U) / 255U;
-            picture.rgb[3 * i + k] = static_cast<std::uint8_t>(std::min(255U, sum));
-        }
-    }
+    self.paint(list, picture);
 }
 
 }  // namespace cathlab
