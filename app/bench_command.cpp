@@ -33,7 +33,7 @@ double ms_between(Clock::time_point a, Clock::time_point b) {
     return std::chrono::duration<double, std::milli>(b - a).count();
 }
 
-// Adds up the time between one stage's begin and the next's, a step at a time.
+// Adds up the time between one stage's begin and the next's, a step (or a picture) at a time.
 class StageTimes {
 public:
     void begin(std::string_view room) {
@@ -53,7 +53,6 @@ public:
         times_["step"].push_back(whole_ms);
         step_.clear();
     }
-    void add(const std::string& name, double ms) { times_[name].push_back(ms); }
     const std::map<std::string, std::vector<double>>& times() const { return times_; }
 
 private:
@@ -87,11 +86,11 @@ void print(const std::vector<Row>& rows, const BenchOptions& options, const Scen
         std::printf("%s\n", out.dump(2).c_str());
         return;
     }
-    std::printf("%s, %d thread%s, double precision, step of %g ms\n", scene.name.c_str(), options.threads,
-                options.threads == 1 ? "" : "s", 1000.0 * scene.step.dt_s);
-    std::printf("%-16s %10s %10s %10s\n", "room", "mean ms", "median", "p99");
+    std::printf("%s, %d thread%s, cluster fits in %s, step of %g ms\n", scene.name.c_str(), options.threads,
+                options.threads == 1 ? "" : "s", scene.wall.precision.c_str(), 1000.0 * scene.step.dt_s);
+    std::printf("%-22s %10s %10s %10s\n", "room", "mean ms", "median", "p99");
     for (const Row& row : rows)
-        std::printf("%-16s %10.3f %10.3f %10.3f\n", row.name.c_str(), row.mean, row.median, row.p99);
+        std::printf("%-22s %10.3f %10.3f %10.3f\n", row.name.c_str(), row.mean, row.median, row.p99);
     std::printf("physics at %.2f x real time\n", real_time);
 }
 
@@ -100,12 +99,14 @@ void bench(const BenchOptions& options, const AppContext& context) {
     const SceneSpec scene = load_scene(find_scene(options.scene, context.data_root), {}, context.data_root);
     const Script script = scene.script.empty() ? Script() : Script::load(scene.script);
     Session session(scene, scene.seed, options.threads, context);
-    StageTimes times;
+    StageTimes times, parts;
     World& world = session.world();
     world.add(*world.find(world_entity), StageProbe{[&](std::string_view room) { times.begin(room); }});
     std::unique_ptr<Film> film;
     if (options.pictures)
-        film = std::make_unique<Film>(scene, FilmOptions{"", scene.video.width, scene.video.height, scene.video.fps},
+        film = std::make_unique<Film>(scene,
+                                      FilmOptions{"", scene.video.width, scene.video.height, scene.video.fps,
+                                                  [&](std::string_view part) { parts.begin(part); }},
                                       false);
     catch_stop_signals();
     Progress progress("benchmark");
@@ -119,7 +120,7 @@ void bench(const BenchOptions& options, const AppContext& context) {
         if (film && film->due(session.channels().time_s)) {
             const auto drawing = Clock::now();
             film->add(world, session.channels());
-            times.add("picture", ms_between(drawing, Clock::now()));
+            parts.end_step(ms_between(drawing, Clock::now()));
         }
         progress.update(static_cast<double>(k + 1) / static_cast<double>(steps));
     }
@@ -127,10 +128,12 @@ void bench(const BenchOptions& options, const AppContext& context) {
     if (times.times().empty()) return;
     std::vector<Row> rows;
     for (const auto& [name, ms] : times.times())
-        if (name != "step" && name != "picture") rows.push_back(row_of(name, ms));
+        if (name != "step") rows.push_back(row_of(name, ms));
     rows.push_back(row_of("step", times.times().at("step")));
     const double real_time = 1000.0 * session.dt() / rows.back().mean;
-    if (times.times().contains("picture")) rows.push_back(row_of("picture", times.times().at("picture")));
+    for (const auto& [name, ms] : parts.times())
+        if (name != "step") rows.push_back(row_of("picture: " + name, ms));
+    if (parts.times().contains("step")) rows.push_back(row_of("picture", parts.times().at("step")));
     print(rows, options, scene, real_time);
 }
 

@@ -41,6 +41,15 @@ struct Nearest {
     }
 };
 
+template <class Visit, class Bound>
+void visit_triangles(const LumenSurfaceModel& model, const LumenSurfaceState& state, const NearLeaves* near,
+                     const Vec3& p, const Bound& bound, const Visit& visit) {
+    if (near)
+        for_near_triangles(model.tree, state.boxes, *near, p, bound, visit);
+    else
+        for_near_triangles(model.tree, state.boxes, p, bound, visit);
+}
+
 Vec3 pseudo_normal(const LumenSurfaceModel& model, const LumenSurfaceState& state, Index triangle, int feature) {
     Vec3 normal = Vec3::Zero();
     if (feature < 3) {
@@ -112,7 +121,7 @@ Nearest closest_of_patch(const LumenSurfaceModel& model, const LumenSurfaceState
 }  // namespace
 
 SurfacePoint closest(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p, double max_distance,
-                     Index hint) {
+                     Index hint, const NearLeaves* near) {
     CATHLAB_CHECK(p.allFinite(), "a device point must be finite");
     CATHLAB_CHECK(hint < static_cast<Index>(model.triangles.size()), "hint is no triangle of this surface");
     Nearest best;
@@ -125,8 +134,8 @@ SurfacePoint closest(const LumenSurfaceModel& model, const LumenSurfaceState& st
     }
     // Boxes and triangles round differently: without the slack an equally near triangle of lower index could be cut
     // off.
-    for_near_triangles(
-        model.tree, state.boxes, p, [&] { return best.foot.squared_distance * (1.0 + 1e-12); },
+    visit_triangles(
+        model, state, near, p, [&] { return best.foot.squared_distance * (1.0 + 1e-12); },
         [&](Index t) { best.offer(t, on_triangle(model, state, p, t)); });
     if (best.triangle < 0) return {};
 
@@ -188,12 +197,12 @@ std::optional<SurfacePoint> first_exit(const LumenSurfaceModel& model, const Lum
 
 std::vector<SurfacePoint> further_walls(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p,
                                         double reach, const SurfacePoint& nearest, const Vec3& nearest_normal,
-                                        int at_most) {
+                                        int at_most, const NearLeaves* near) {
     std::vector<SurfacePoint> candidates;
     if (at_most <= 0 || !nearest.found()) return candidates;
     const double reach2 = reach * reach;
-    for_near_triangles(
-        model.tree, state.boxes, p, [&] { return reach2; },
+    visit_triangles(
+        model, state, near, p, [&] { return reach2; },
         [&](Index t) {
             if (t == nearest.triangle) return;
             // Most triangles of a wide vessel face as the nearest one does: sorted out before anything dear.

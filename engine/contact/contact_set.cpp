@@ -13,6 +13,10 @@ namespace {
 // A row that is open wider than this does not care where exactly it looks.
 constexpr double near_mm = 0.1;
 
+// Neighbouring samples that look at the same part of the wall, and the ball that they may fill.
+constexpr std::size_t samples_together = 8;
+constexpr double ball_mm = 12.0;
+
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
@@ -60,6 +64,24 @@ void warm_start(std::span<ChainRow> rows, std::span<const ChainRow> old_rows) {
     }
 }
 
+/// Leaves for sample `first` (in the order of `place`) and those after it that lie in one small ball; the number of the
+/// first sample beyond.
+std::size_t gather_leaves(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
+                          std::span<const DeviceSample> samples, const std::vector<std::int64_t>& place,
+                          std::size_t first, std::size_t end, double margin, NearLeaves& near) {
+    const Vec3 centre = samples[at(place[std::min(first + samples_together / 2, end - 1)])].position;
+    double radius = 0.0;
+    std::size_t last = first;
+    for (; last < std::min(end, first + samples_together); ++last) {
+        const DeviceSample& s = samples[at(place[last])];
+        const double reach = (s.position - centre).norm() + s.radius + margin;
+        if (last > first && reach > ball_mm) break;
+        radius = std::max(radius, reach);
+    }
+    near.gather(model.tree, surface.boxes, centre, radius);
+    return last;
+}
+
 }  // namespace
 
 struct ContactSet::Found {
@@ -67,6 +89,7 @@ struct ContactSet::Found {
     Vec3 smooth = Vec3::Zero();  ///< normal for the nearest wall
     int count = 0;
     Index hint = -1;
+    bool outside = false;  ///< the sample's centre lies beyond the wall
 };
 
 ContactSet::ContactSet(const ContactSettings& settings) : settings_(settings) {
@@ -78,7 +101,8 @@ ContactSet::ContactSet(const ContactSettings& settings) : settings_(settings) {
 }
 
 ContactSet::Found ContactSet::look(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
-                                   const DeviceSample& sample, Index hint, double margin) const {
+                                   const DeviceSample& sample, Index hint, bool known_inside, double margin,
+                                   const NearLeaves& near) const {
     Found found;
     const Vec3 motion = sample.position - sample.previous;
     const double moved = motion.norm();
@@ -91,9 +115,14 @@ ContactSet::Found ContactSet::look(const LumenSurfaceModel& model, const LumenSu
         if (exit) hint = exit->triangle;
     }
     const double reach = sample.radius + margin;
+    // What was inside and moved little is inside still, or in reach of the wall that it went into: the many samples in
+    // the middle of a wide vessel need not look at all of its walls.
+    const bool look_far = !known_inside || moved > 0.5 * margin;
     const SurfacePoint nearest =
-        closest(model, surface, sample.position, std::max(reach, settings_.recovery_mm + moved), hint);
+        look_far ? closest(model, surface, sample.position, std::max(reach, settings_.recovery_mm + moved), hint)
+                 : closest(model, surface, sample.position, reach, hint, &near);
     found.hint = nearest.triangle;
+    found.outside = nearest.found() && nearest.signed_distance < 0.0;
     if (!nearest.found() || nearest.signed_distance > reach || nearest.inward_normal.squaredNorm() < 0.5) return found;
     found.wall[static_cast<std::size_t>(found.count++)] = nearest;
     found.smooth = inward_smooth_normal(model, surface, nearest.triangle, nearest.barycentric);
@@ -101,7 +130,7 @@ ContactSet::Found ContactSet::look(const LumenSurfaceModel& model, const LumenSu
     const int most = sample.walls > 0 ? std::min(sample.walls, max_rows_per_sample) : settings_.rows_per_sample;
     if (most < 2) return found;
     for (const SurfacePoint& wall :
-         further_walls(model, surface, sample.position, reach, nearest, found.smooth, most - 1)) {
+         further_walls(model, surface, sample.position, reach, nearest, found.smooth, most - 1, &near)) {
         // Rows that look at each other across a fold would lock: the nearest wall alone decides on which side to stay.
         if (wall.inward_normal.dot(nearest.inward_normal) > 0.0)
             found.wall[static_cast<std::size_t>(found.count++)] = wall;
@@ -163,16 +192,28 @@ void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState&
 
     std::vector<Found> found(n);
     const auto triangles = static_cast<Index>(model.triangles.size());
-    workers.for_ranges(n, 32, [&](std::size_t begin, std::size_t end) {
+    workers.for_ranges(n, 4 * samples_together, [&](std::size_t begin, std::size_t end) {
+        NearLeaves near;
+        std::size_t together = begin;  // `near` serves the samples before this one
         for (std::size_t i = begin; i < end; ++i) {
             const DeviceSample& s = samples[at(memory_.place[i])];
+            if (i == together) {
+                together = gather_leaves(model, surface, samples, memory_.place, i, end, margin, near);
+            }
             Index hint = s.hint;
-            if (hint < 0 && remembered[i] >= 0) hint = old_memory.triangle[at(old_memory.place[at(remembered[i])])];
-            found[i] = look(model, surface, s, hint < triangles ? hint : -1, margin);
+            bool known_inside = false;
+            if (remembered[i] >= 0) {
+                const std::size_t place = at(old_memory.place[at(remembered[i])]);
+                if (hint < 0) hint = old_memory.triangle[place];
+                known_inside = old_memory.outside[place] == 0;
+            }
+            found[i] = look(model, surface, s, hint < triangles ? hint : -1, known_inside, margin, near);
         }
     });
 
+    slot_.resize(particle_compliance.size(), 0);
     memory_.triangle.assign(n, -1);
+    memory_.outside.assign(n, 0);
     sample_before_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         const std::int64_t place = memory_.place[i];
@@ -181,6 +222,7 @@ void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState&
         memory_.arc.push_back(s.arc_mm);
         memory_.first_row.push_back(static_cast<std::int64_t>(rows_.size()));
         memory_.triangle[at(place)] = found[i].hint;
+        memory_.outside[at(place)] = found[i].outside ? 1 : 0;
         sample_before_[at(place)] = s.previous;
         for (int k = 0; k < found[i].count; ++k) {
             const SurfacePoint& at_wall = found[i].wall[static_cast<std::size_t>(k)];
@@ -199,11 +241,11 @@ void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState&
                 for (Index b = model.binding.start[v]; b < model.binding.start[v + 1]; ++b) {
                     const Index particle = model.binding.particle[at(b)];
                     const double weight = at_wall.barycentric[corner] * model.binding.weight[at(b)];
-                    const auto first = particle_.begin() + static_cast<std::ptrdiff_t>(wall.begin);
-                    const auto known = std::find(first, particle_.end(), particle);
-                    if (known != particle_.end()) {
-                        weight_[static_cast<std::size_t>(known - particle_.begin())] += weight;
+                    std::size_t& slot = slot_[at(particle)];
+                    if (slot >= wall.begin && slot < particle_.size() && particle_[slot] == particle) {
+                        weight_[slot] += weight;
                     } else if (weight != 0.0) {
+                        slot = particle_.size();
                         particle_.push_back(particle);
                         weight_.push_back(weight);
                     }
@@ -220,6 +262,7 @@ void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState&
             row.link = s.link;
             row.normal = k == 0 ? found[i].smooth : at_wall.inward_normal;
             wall.offset = row.normal.dot(s.position - at_wall.point) - (at_wall.signed_distance - s.radius);
+            row.gap = at_wall.signed_distance - s.radius;
             row.friction = s.friction;
             rows_.push_back(row);
             wall_.push_back(wall);
@@ -237,12 +280,15 @@ void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState&
 
 void ContactSet::set_compliance(std::span<const double> particle_compliance) {
     touching_.resize(particle_compliance.size(), 0);
-    for (const Index p : particle_) ++touching_[at(p)];
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+        if (wall_[r].kinematic || !(rows_[r].multiplier > 0.0 || rows_[r].gap < near_mm)) continue;
+        for (std::size_t j = wall_[r].begin; j < wall_[r].end; ++j) ++touching_[at(particle_[j])];
+    }
     for (std::size_t r = 0; r < rows_.size(); ++r) {
         double compliance = 0.0;
         for (std::size_t j = wall_[r].begin; j < wall_[r].end; ++j) {
             const std::size_t p = at(particle_[j]);
-            compliance += weight_[j] * weight_[j] * particle_compliance[p] * touching_[p];
+            compliance += weight_[j] * weight_[j] * particle_compliance[p] * std::max<Index>(1, touching_[p]);
         }
         rows_[r].compliance = std::max(compliance, settings_.min_compliance_mm_per_mn);
     }
@@ -342,6 +388,14 @@ void ContactSet::yield(Index device, std::span<const ChainRow> before, std::span
     }
 }
 
+void ContactSet::add_touched(std::vector<Index>& particles) const {
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+        if (rows_[r].multiplier <= 0.0 && rows_[r].gap > near_mm) continue;
+        particles.insert(particles.end(), particle_.begin() + static_cast<std::ptrdiff_t>(wall_[r].begin),
+                         particle_.begin() + static_cast<std::ptrdiff_t>(wall_[r].end));
+    }
+}
+
 void ContactSet::apply_to_wall(std::span<Vec3> force) const {
     for (std::size_t r = 0; r < rows_.size(); ++r) {
         const ChainRow& row = rows_[r];
@@ -367,6 +421,7 @@ void visit(Archive& archive, ContactSet& set) {
     archive.field("device", set.memory_.device);
     archive.field("arc_mm", set.memory_.arc);
     archive.field("triangle", triangle);
+    archive.field("outside", set.memory_.outside);
     archive.field("first_row", set.memory_.first_row);
     archive.field("multiplier_mn", multiplier);
     archive.field("normal", normal);

@@ -109,6 +109,9 @@ public:
     void solve_kinematic(std::span<const DeviceSample> samples_now, std::span<Vec3> particles,
                          std::span<const double> particle_compliance, int sweeps);
 
+    /// Adds the particles of the rows that are closed or nearly so at the last refresh; repeats are possible.
+    void add_touched(std::vector<Index>& particles) const;
+
     /// Adds -w_j (lambda n + t) of every row to force (mN, one a particle), in the order of the rows.
     void apply_to_wall(std::span<Vec3> force) const;
 
@@ -136,13 +139,14 @@ private:
     struct Memory {
         std::vector<std::int64_t> device, first_row;  ///< first_row has one entry more
         std::vector<double> arc;
-        std::vector<std::int64_t> place;  ///< of the sample in its span
-        std::vector<Index> triangle;      ///< by place
+        std::vector<std::int64_t> place;    ///< of the sample in its span
+        std::vector<Index> triangle;        ///< by place
+        std::vector<std::int64_t> outside;  ///< by place: 1 = the sample's centre was beyond the wall
     };
     struct Found;
 
     Found look(const LumenSurfaceModel& model, const LumenSurfaceState& surface, const DeviceSample& sample, Index hint,
-               double margin) const;
+               bool known_inside, double margin, const NearLeaves& near) const;
     void set_compliance(std::span<const double> particle_compliance);
 
     ContactSettings settings_;
@@ -151,7 +155,8 @@ private:
     std::vector<Vec3> sample_before_;  ///< by place
     std::vector<Index> particle_;
     std::vector<double> weight_;
-    std::vector<Index> touching_;  ///< N_j, one a particle; zero outside set_compliance
+    std::vector<std::size_t> slot_;  ///< (particles) where detect put a particle last; any value is right at first
+    std::vector<Index> touching_;    ///< N_j, one a particle; zero outside set_compliance
     Memory memory_;
 };
 

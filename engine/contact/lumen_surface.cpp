@@ -101,6 +101,18 @@ void update(const LumenSurfaceModel& model, std::span<const Vec3> particle_posit
     refit(model.tree, state.vertices, state.boxes, workers);
 }
 
+void update(const LumenSurfaceModel& model, std::span<const Vec3> particle_positions, const TreePart& part,
+            LumenSurfaceState& state, const Workers& workers) {
+    CATHLAB_CHECK(state.vertices.size() == model.vertex_count(), "the whole surface is updated before a part of it");
+    workers.for_ranges(part.vertices.size(), 512, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t v = at(part.vertices[k]);
+            state.vertices[v] = evaluate(model.binding, v, particle_positions);
+        }
+    });
+    refit(model.tree, part, state.vertices, state.boxes, workers);
+}
+
 Vec3 inward_triangle_normal(const LumenSurfaceModel& model, const LumenSurfaceState& state, Index triangle) {
     const Triangle& t = model.triangles[at(triangle)];
     const Vec3& a = state.vertices[at(t[0])];

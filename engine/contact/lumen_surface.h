@@ -45,6 +45,11 @@ LumenSurfaceModel build_lumen_surface(const TriMesh& lumen, std::span<const Inde
 void update(const LumenSurfaceModel& model, std::span<const Vec3> particle_positions, LumenSurfaceState& state,
             const Workers& workers);
 
+/// The same for a part of it; the rest stays where it was.  What devices do not come near needs to follow a step and
+/// not a substep.
+void update(const LumenSurfaceModel& model, std::span<const Vec3> particle_positions, const TreePart& part,
+            LumenSurfaceState& state, const Workers& workers);
+
 /// Unit normals into the lumen; zero where the triangle has no area.
 Vec3 inward_triangle_normal(const LumenSurfaceModel& model, const LumenSurfaceState& state, Index triangle);
 

@@ -6,7 +6,9 @@
 namespace cathlab {
 namespace {
 
-constexpr Index leaf_size = 8;
+constexpr Index leaf_size = 4;
+constexpr std::size_t leaf_grain = 1024;
+constexpr double ball_mm = 10.0;  // places that are asked for at once
 
 Vec3 centroid(const Triangle& t, std::span<const Vec3> vertices) {
     return (vertices[static_cast<std::size_t>(t[0])] + vertices[static_cast<std::size_t>(t[1])] +
@@ -73,29 +75,102 @@ SurfaceTree build_surface_tree(std::span<const Triangle> triangles, std::span<co
     return tree;
 }
 
+namespace {
+
+SurfaceBox leaf_box(const SurfaceTree& tree, std::size_t leaf, std::span<const Vec3> vertices) {
+    const auto first = static_cast<std::size_t>(tree.leaf_vertex_start[leaf]);
+    const auto last = static_cast<std::size_t>(tree.leaf_vertex_start[leaf + 1]);
+    SurfaceBox box{vertices[static_cast<std::size_t>(tree.leaf_vertex[first])], Vec3::Zero()};
+    box.high = box.low;
+    for (std::size_t i = first + 1; i < last; ++i) box.add(vertices[static_cast<std::size_t>(tree.leaf_vertex[i])]);
+    return box;
+}
+
+SurfaceBox inner_box(const SurfaceTree& tree, std::size_t node, const std::vector<SurfaceBox>& boxes) {
+    const auto left = static_cast<std::size_t>(tree.nodes[node].first);
+    SurfaceBox box = boxes[left];
+    box.add(boxes[left + 1].low);
+    box.add(boxes[left + 1].high);
+    return box;
+}
+
+}  // namespace
+
 void refit(const SurfaceTree& tree, std::span<const Vec3> vertices, std::vector<SurfaceBox>& boxes,
            const Workers& workers) {
     boxes.resize(tree.nodes.size());
-    workers.for_ranges(tree.leaves.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t l = begin; l < end; ++l) {
-            const auto first = static_cast<std::size_t>(tree.leaf_vertex_start[l]);
-            const auto last = static_cast<std::size_t>(tree.leaf_vertex_start[l + 1]);
-            SurfaceBox box{vertices[static_cast<std::size_t>(tree.leaf_vertex[first])], Vec3::Zero()};
-            box.high = box.low;
-            for (std::size_t i = first + 1; i < last; ++i) {
-                box.add(vertices[static_cast<std::size_t>(tree.leaf_vertex[i])]);
-            }
-            boxes[static_cast<std::size_t>(tree.leaves[l])] = box;
+    workers.for_ranges(tree.leaves.size(), leaf_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t l = begin; l < end; ++l)
+            boxes[static_cast<std::size_t>(tree.leaves[l])] = leaf_box(tree, l, vertices);
+    });
+    for (std::size_t n = tree.nodes.size(); n-- > 0;)
+        if (tree.nodes[n].count == 0) boxes[n] = inner_box(tree, n, boxes);
+}
+
+void refit(const SurfaceTree& tree, const TreePart& part, std::span<const Vec3> vertices,
+           std::vector<SurfaceBox>& boxes, const Workers& workers) {
+    workers.for_ranges(part.leaves.size(), leaf_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const auto l = static_cast<std::size_t>(part.leaves[k]);
+            boxes[static_cast<std::size_t>(tree.leaves[l])] = leaf_box(tree, l, vertices);
         }
     });
+    for (const Index n : part.inner) {
+        const auto node = static_cast<std::size_t>(n);
+        boxes[node] = inner_box(tree, node, boxes);
+    }
+}
+
+TreePart part_near(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes, std::span<const Vec3> places,
+                   double reach) {
+    std::vector<std::uint8_t> wanted(tree.nodes.size(), 0);
+    NearLeaves near;
+    for (std::size_t i = 0; i < places.size();) {
+        const Vec3& centre = places[i];
+        double radius = 0.0;
+        for (; i < places.size() && (places[i] - centre).squaredNorm() <= ball_mm * ball_mm; ++i)
+            radius = std::max(radius, (places[i] - centre).norm());
+        near.gather(tree, boxes, centre, radius + reach);
+        for (const Index n : near.nodes) wanted[static_cast<std::size_t>(n)] = 1;
+    }
+    TreePart part;
+    for (std::size_t l = 0; l < tree.leaves.size(); ++l) {
+        if (!wanted[static_cast<std::size_t>(tree.leaves[l])]) continue;
+        part.leaves.push_back(static_cast<Index>(l));
+        part.vertices.insert(part.vertices.end(), tree.leaf_vertex.begin() + tree.leaf_vertex_start[l],
+                             tree.leaf_vertex.begin() + tree.leaf_vertex_start[l + 1]);
+    }
+    std::sort(part.vertices.begin(), part.vertices.end());
+    part.vertices.erase(std::unique(part.vertices.begin(), part.vertices.end()), part.vertices.end());
     for (std::size_t n = tree.nodes.size(); n-- > 0;) {
         const SurfaceTree::Node& node = tree.nodes[n];
         if (node.count > 0) continue;
-        const SurfaceBox& right = boxes[static_cast<std::size_t>(node.first) + 1];
-        SurfaceBox box = boxes[static_cast<std::size_t>(node.first)];
-        box.add(right.low);
-        box.add(right.high);
-        boxes[n] = box;
+        const auto left = static_cast<std::size_t>(node.first);
+        if (!wanted[left] && !wanted[left + 1]) continue;
+        wanted[n] = 1;
+        part.inner.push_back(static_cast<Index>(n));
+    }
+    return part;
+}
+
+void NearLeaves::gather(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes, const Vec3& centre,
+                        double radius) {
+    nodes.clear();
+    if (tree.nodes.empty()) return;
+    const double bound = radius * radius;
+    Index stack[64];  // as deep as the tree
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+        const Index n = stack[--top];
+        if (boxes[static_cast<std::size_t>(n)].squared_distance(centre) > bound) continue;
+        const SurfaceTree::Node& node = tree.nodes[static_cast<std::size_t>(n)];
+        if (node.count > 0) {
+            nodes.push_back(n);
+            continue;
+        }
+        stack[top++] = node.first + 1;
+        stack[top++] = node.first;
     }
 }
 

@@ -54,6 +54,21 @@ SurfaceTree build_surface_tree(std::span<const Triangle> triangles, std::span<co
 void refit(const SurfaceTree& tree, std::span<const Vec3> vertices, std::vector<SurfaceBox>& boxes,
            const Workers& workers);
 
+/// A part of the tree: some leaves and all nodes above them.
+struct TreePart {
+    std::vector<Index> leaves;    ///< numbers l of tree.leaves[l], ascending
+    std::vector<Index> inner;     ///< nodes, descending: children before parents
+    std::vector<Index> vertices;  ///< of the leaves' triangles, ascending
+};
+
+/// The leaves whose boxes come within `reach` of any of `places`, which lie near each other as they follow.
+TreePart part_near(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes, std::span<const Vec3> places,
+                   double reach);
+
+/// The boxes of a part; the others stay as they are.
+void refit(const SurfaceTree& tree, const TreePart& part, std::span<const Vec3> vertices,
+           std::vector<SurfaceBox>& boxes, const Workers& workers);
+
 /// Calls visit(triangle) for every triangle whose leaf box is within sqrt(bound()) of p, near boxes first; bound() is
 /// asked again at every box, so visit may shrink it.
 template <class Visit, class Bound>
@@ -80,6 +95,25 @@ void for_near_triangles(const SurfaceTree& tree, const std::vector<SurfaceBox>& 
         const bool left_first = left <= right;
         stack[top++] = left_first ? Entry{node.first + 1, right} : Entry{node.first, left};
         stack[top++] = left_first ? Entry{node.first, left} : Entry{node.first + 1, right};
+    }
+}
+
+/// Leaves that a few neighbouring queries share: one walk down the tree instead of one a query.  Holds every leaf whose
+/// box meets the ball (centre, radius).
+struct NearLeaves {
+    std::vector<Index> nodes;
+
+    void gather(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes, const Vec3& centre, double radius);
+};
+
+/// The same over some leaves, in their order.
+template <class Visit, class Bound>
+void for_near_triangles(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes, const NearLeaves& leaves,
+                        const Vec3& p, const Bound& bound, const Visit& visit) {
+    for (const Index leaf : leaves.nodes) {
+        if (boxes[static_cast<std::size_t>(leaf)].squared_distance(p) > bound()) continue;
+        const SurfaceTree::Node& node = tree.nodes[static_cast<std::size_t>(leaf)];
+        for (Index i = node.first; i < node.first + node.count; ++i) visit(tree.order[static_cast<std::size_t>(i)]);
     }
 }
 

@@ -52,6 +52,7 @@ struct SceneWall {
     double damping_per_s = 10.0;
     double surrounding_kpa_per_mm = 0.02;     ///< elastic foundation: tissue around the vessels
     double surrounding_kpa_s_per_mm = 0.002;  ///< its damping
+    std::string precision = "float";          ///< of the cluster fits; positions are double in either
     double friction = 0.1;
     std::vector<SceneWallRegion> regions;
 };

@@ -69,6 +69,8 @@ Table<SceneWall> wall_table() {
                 "stiffness of the tissue around the vessels, an elastic foundation; 0 = nothing around them")
         .number("surrounding_kpa_s_per_mm", &SceneWall::surrounding_kpa_s_per_mm, "kPa s/mm", {0, 10},
                 "damping of that tissue")
+        .choice("precision", &SceneWall::precision, {"float", "double"},
+                "of the cluster fits; positions and forces are double in either")
         .number("damping_per_s", &SceneWall::damping_per_s, "1/s", {0, 1000},
                 "rate at which motion against the clusters dies")
         .number("friction", &SceneWall::friction, "1", {0, 2}, "Coulomb coefficient between wall and devices")
@@ -122,9 +124,9 @@ Table<SceneSpec>& add_effects(Table<SceneSpec>& scene) {
         f.key = std::string(info.name);
         f.kind = FieldKind::table;
         f.doc = std::string(info.doc);
+        f.unlisted = info.for_tests;
         f.sub = std::make_shared<const TableSpec>(
             Table<SceneEffect>(f.doc)
-        f.unlisted = info.for_tests;
                 .boolean("enabled", &SceneEffect::enabled,
                          "switches the effect off when false; naming it switches it on")
                 .parameters(info.parameters, &SceneEffect::values)

@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::size_t particle_grain = 1024;
 constexpr std::size_t group_grain = 8;
+constexpr std::size_t run_grain = 16;
+constexpr Index run_gap = 8;              // particles between two runs that are cheaper to take along than to go round
 constexpr double largest_guess_mm = 0.5;  // of a force's share in the start of the first fit
 
 std::size_t at(Index i) {
@@ -23,6 +25,43 @@ const double* numbers(const std::vector<Vec3>& v) {
 
 double stiffness(const SoftBodyModel& model, const SoftBodyScratch& scratch, std::size_t i) {
     return scratch.stiffness_scale.empty() ? model.stiffness[i] : scratch.stiffness_scale[i] * model.stiffness[i];
+}
+
+/// The groups of clusters in the model's precision.
+class Clusters {
+public:
+    explicit Clusters(const SoftBodyModel& model)
+        : wide_(model.precision == Precision::double_),
+          double_(model.clusters.view()),
+          float_(model.clusters_float.view()) {}
+
+    void fit(const kernel::Set& set, SoftBodyState& state, SoftBodyScratch& scratch, std::size_t begin,
+             std::size_t end) const {
+        (wide_ ? set.fit_double : set.fit_float)(wide_ ? static_cast<const void*>(&double_) : &float_, numbers(state.x),
+                                                 state.rotation.data(), scratch.transform.data(), begin, end);
+    }
+    /// Particles of a group, with repeats.
+    std::span<const std::int32_t> members(std::size_t group) const {
+        const std::int32_t* slot = wide_ ? double_.first_slot : float_.first_slot;
+        const std::int32_t* particle = wide_ ? double_.particle : float_.particle;
+        const auto first = static_cast<std::size_t>(slot[group]), last = static_cast<std::size_t>(slot[group + 1]);
+        return {particle + first * kernel::lanes, (last - first) * kernel::lanes};
+    }
+
+private:
+    bool wide_;
+    kernel::Groups<double> double_;
+    kernel::Groups<float> float_;
+};
+
+void apply_to(const SoftBodyModel& model, SoftBodyState& state, const SoftBodyScratch& scratch, double h,
+              std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+        if (model.fixed[i]) continue;
+        const double inertia = model.mass[i] / (h * h);
+        state.x[i] = scratch.compliance[i] * (inertia * scratch.predicted[i] +
+                                              stiffness(model, scratch, i) * scratch.goal[i] + scratch.force[i]);
+    }
 }
 
 /// Linear and angular momentum of a free body, the latter about `origin`.
@@ -146,13 +185,9 @@ void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScrat
     const std::size_t groups = model.group_count();
     scratch.transform.resize(groups * kernel::lanes * kernel::transform_doubles);
     scratch.goal.resize(model.size());
-    const bool wide = model.precision == Precision::double_;
-    const kernel::Groups<double> view = model.clusters.view();
-    const kernel::Groups<float> view_float = model.clusters_float.view();
-    workers.for_ranges(groups, group_grain, [&](std::size_t begin, std::size_t end) {
-        (wide ? set.fit_double : set.fit_float)(wide ? static_cast<const void*>(&view) : &view_float, numbers(state.x),
-                                                state.rotation.data(), scratch.transform.data(), begin, end);
-    });
+    const Clusters clusters(model);
+    workers.for_ranges(groups, group_grain,
+                       [&](std::size_t begin, std::size_t end) { clusters.fit(set, state, scratch, begin, end); });
     workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
         set.gather(model.cluster_start.data(), model.cluster.data(), scratch.transform.data(), numbers(model.rest),
                    scratch.goal.front().data(), begin, end);
@@ -163,13 +198,58 @@ void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& sc
            const Workers& workers) {
     CATHLAB_CHECK(scratch.force.size() == model.size() && scratch.goal.size() == model.size(),
                   "predict and solve_goals come before apply");
-    workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (model.fixed[i]) continue;
-            const double inertia = model.mass[i] / (h * h);
-            state.x[i] = scratch.compliance[i] * (inertia * scratch.predicted[i] +
-                                                  stiffness(model, scratch, i) * scratch.goal[i] + scratch.force[i]);
+    workers.for_ranges(model.size(), particle_grain,
+                       [&](std::size_t begin, std::size_t end) { apply_to(model, state, scratch, h, begin, end); });
+}
+
+WallPart part_around(const SoftBodyModel& model, std::span<const Index> touched) {
+    std::vector<std::uint8_t> group(model.group_count(), 0), particle(model.size(), 0);
+    for (const Index i : touched)
+        for (Index m = model.cluster_start[at(i)]; m < model.cluster_start[at(i) + 1]; ++m)
+            group[at(model.cluster[at(m)]) / kernel::lanes] = 1;
+    const Clusters clusters(model);
+    WallPart part;
+    for (std::size_t g = 0; g < group.size(); ++g) {
+        if (!group[g]) continue;
+        part.groups.push_back(static_cast<Index>(g));
+        for (const std::int32_t i : clusters.members(g)) particle[at(i)] = 1;
+    }
+    for (std::size_t i = 0; i < particle.size(); ++i) {
+        if (!particle[i]) continue;
+        const auto k = static_cast<Index>(i);
+        if (!part.runs.empty() && k - part.runs.back().second <= run_gap)
+            part.runs.back().second = k + 1;
+        else
+            part.runs.emplace_back(k, k + 1);
+    }
+    return part;
+}
+
+void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const WallPart& part,
+                 const Workers& workers) {
+    CATHLAB_CHECK(scratch.goal.size() == model.size(), "the whole wall is fitted before a part of it");
+    const kernel::Set& set = kernel::best();
+    const Clusters clusters(model);
+    workers.for_ranges(part.groups.size(), group_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t g = at(part.groups[k]);
+            clusters.fit(set, state, scratch, g, g + 1);
         }
+    });
+    workers.for_ranges(part.runs.size(), run_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k)
+            set.gather(model.cluster_start.data(), model.cluster.data(), scratch.transform.data(), numbers(model.rest),
+                       scratch.goal.front().data(), at(part.runs[k].first), at(part.runs[k].second));
+    });
+}
+
+void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h, const WallPart& part,
+           const Workers& workers) {
+    CATHLAB_CHECK(scratch.force.size() == model.size() && scratch.goal.size() == model.size(),
+                  "predict and solve_goals come before apply");
+    workers.for_ranges(part.runs.size(), run_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k)
+            apply_to(model, state, scratch, h, at(part.runs[k].first), at(part.runs[k].second));
     });
 }
 

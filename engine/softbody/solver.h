@@ -8,6 +8,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/archive.h"
@@ -53,6 +54,23 @@ void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScrat
 
 /// state.x from x~, goals and scratch.force.
 void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+           const Workers& workers);
+
+/// A part of the wall: the groups of clusters that hold any of some particles, and all particles of those groups, as
+/// runs [first, second) that may take in a few neighbours.  Passes after the first need only look here: where nothing
+/// touched the wall, it has nothing new to say.
+struct WallPart {
+    std::vector<Index> groups;                  ///< ascending
+    std::vector<std::pair<Index, Index>> runs;  ///< of particles, ascending, apart
+};
+/// touched: particles, in any order, repeats allowed.
+WallPart part_around(const SoftBodyModel& model, std::span<const Index> touched);
+
+/// The same for a part: the goals there follow from its clusters as they are fitted now and the others as they were
+/// fitted last.
+void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const WallPart& part,
+                 const Workers& workers);
+void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h, const WallPart& part,
            const Workers& workers);
 
 /// v = (x - x_start) / h, drawn towards the velocity of the goal, (g - g_last) / h, at the model's damping rate: a

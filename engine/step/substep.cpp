@@ -18,12 +18,14 @@ constexpr double bore_spacing_mm = 2.5;
 constexpr int kinematic_sweeps = 6;
 // The chain is solved again at once, against the wall that has yielded to it, while it is pressed in deeper than this.
 constexpr int wire_solves = 8;
-constexpr double wire_depth_mm = 0.03;
+constexpr double wire_depth_mm = 0.1;
 // The front end of the wire: what pushes back there stops it.
 constexpr double front_mm = 3.0;
 // A pass is repeated, with contacts looked for anew, while device and wall slid past each other by more than this.
 constexpr double stale_mm = 0.2;
 constexpr int extra_passes = 2;
+// Within a step the lumen surface follows the wall up to this far from the devices.
+constexpr double surface_reach_mm = 6.0;
 
 void command_wire(Parts& p, const Input& input, double h, StepSums& sums) {
     const bool selected = input.device < 0.5;
@@ -59,10 +61,19 @@ void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<Ch
     std::copy(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(wall_rows.size()), wall_rows.begin());
 }
 
-// Rows for the samples where they are now, against the wall at `particles`.
-void find_contacts(Parts& p, DeviceSamples& samples, std::span<const Vec3> particles) {
-    update(*p.surface, particles, *p.surface_state, p.world->workers());
+// Rows for the samples where they are now, against the wall at `particles`.  The surface follows as a whole once a
+// step, and then where devices are.
+void find_contacts(Parts& p, DeviceSamples& samples, std::span<const Vec3> particles, StepSums& sums) {
     refresh_samples(p, samples);
+    const Workers& workers = p.world->workers();
+    if (sums.surface_near) {
+        update(*p.surface, particles, *sums.surface_near, *p.surface_state, workers);
+    } else {
+        update(*p.surface, particles, *p.surface_state, workers);
+        std::vector<Vec3> places;
+        for (const DeviceSample& s : samples.list) places.push_back(s.position);
+        sums.surface_near = part_near(p.surface->tree, p.surface_state->boxes, places, surface_reach_mm);
+    }
     p.contacts->detect(*p.surface, *p.surface_state, samples.list, p.settings->contact_margin_mm, p.wall_scratch->start,
                        p.wall_scratch->compliance, p.world->workers());
 }
@@ -142,7 +153,7 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
     // 2. Contacts, against the wall where it was when the substep began: the prediction is inertia alone, and a wall
     // that leans on a device would be looked for where the device is not.
     p.stage("contact");
-    find_contacts(p, samples, scratch.start);
+    find_contacts(p, samples, scratch.start, sums);
     p.stage("heart");
     extra.detect_heart(p, drive, h);
 
@@ -151,11 +162,19 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
     std::vector<ChainRow> rows;
     std::vector<ChainRow> bore_rows;
     int passes = p.settings->iterations;
+    bool looked_again = false;
+    WallPart touched;  // by devices and heart: passes after the first look at the wall around them alone
     for (int pass = 0; pass < passes; ++pass) {
         p.stage("softbody");
-        solve_goals(wall, state, scratch, workers);
-        extra.gather(p);
-        apply(wall, state, scratch, h, workers);
+        if (pass == 0) {
+            solve_goals(wall, state, scratch, workers);
+            extra.gather(p);
+            apply(wall, state, scratch, h, workers);
+        } else {
+            solve_goals(wall, state, scratch, touched, workers);
+            extra.gather(p);
+            apply(wall, state, scratch, h, touched, workers);
+        }
 
         p.stage("contact");
         refresh_samples(p, samples);
@@ -175,8 +194,14 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
         extra.solve(p);
 
         p.stage("softbody");
+        if (pass == 0 || looked_again) {
+            std::vector<Index> particles;
+            p.contacts->add_touched(particles);
+            extra.add_touched(particles);
+            touched = part_around(wall, particles);
+        }
         extra.gather(p);
-        apply(wall, state, scratch, h, workers);
+        apply(wall, state, scratch, h, touched, workers);
 
         // Where wall and device slid past each other, the rows speak of another place: look again, and once more.
         p.stage("contact");
@@ -184,7 +209,8 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
         p.contacts->refresh(samples.list, state.x);
         if (pass + 1 == passes && passes < p.settings->iterations + extra_passes &&
             p.contacts->staleness() > stale_mm) {
-            find_contacts(p, samples, state.x);
+            find_contacts(p, samples, state.x, sums);
+            looked_again = true;
             ++passes;
         }
     }

@@ -1,6 +1,7 @@
 // One substep: predict, detect contacts, repeat { clusters; chain; rows }, velocities, forces.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/input.h"
@@ -20,6 +21,7 @@ struct StepSums {
     double imbalance = 0.0;                                           ///< largest
     Index tip_region = -1;  ///< of the wall contact nearest to a tip that carries force; -1 = no tip in contact
     Index tip_device = -1;
+    std::optional<TreePart> surface_near;  ///< what the lumen surface's later updates in this step are about
 };
 
 /// Advances everything by h.  `time_s`: at the beginning; `s0`, `s1`: the part of the step that the substep covers, 0

@@ -67,6 +67,11 @@ void WallForces::solve(const Parts& p) {
     }
 }
 
+void WallForces::add_touched(std::vector<Index>& particles) const {
+    for (const CylinderRow& row : rows_) particles.push_back(row.particle);
+    for (const WallAnchor& anchor : anchors_) particles.push_back(anchor.particle);
+}
+
 void WallForces::gather(const Parts& p) const {
     std::vector<Vec3>& force = p.wall_scratch->force;
     std::fill(force.begin(), force.end(), Vec3::Zero());

@@ -27,6 +27,9 @@ public:
     ///   anchor:  f = k (target - x_free) / (1 + c k),  x_free = x - c f_old: exact for what else acts on the particle
     void solve(const Parts& parts);
 
+    /// Adds the particles that heart or anchors act on; repeats are possible.
+    void add_touched(std::vector<Index>& particles) const;
+
     /// Scratch force = devices + heart + anchors, mN.
     void gather(const Parts& parts) const;
 

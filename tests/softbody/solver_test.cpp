@@ -200,5 +200,41 @@ TEST(Solver, TheStateDoesNotDependOnTheNumberOfThreads) {
     EXPECT_EQ(hash[0], hash[2]);
 }
 
+TEST(Solver, APartOfTheWallIsSolvedAsTheWholeWouldBe) {
+    Wall wall(rig::free_tube());
+    rig::shake(wall, 50.0);
+    const double h = 0.004;
+    predict(wall.model, wall.state, wall.scratch, h, {}, {}, wall.workers);
+    solve_goals(wall.model, wall.state, wall.scratch, wall.workers);
+    apply(wall.model, wall.state, wall.scratch, h, wall.workers);
+    const std::vector<Index> touched{3, 3, 40};
+    const WallPart part = part_around(wall.model, touched);
+    ASSERT_FALSE(part.runs.empty());
+    std::vector<std::uint8_t> inside(wall.model.size(), 0);
+    for (const auto& [first, second] : part.runs)
+        for (Index i = first; i < second; ++i) inside[static_cast<std::size_t>(i)] = 1;
+    // What a second pass over the whole wall finds for particles whose clusters all belong to the part.
+    Wall whole = wall;
+    solve_goals(whole.model, whole.state, whole.scratch, whole.workers);
+    apply(whole.model, whole.state, whole.scratch, h, whole.workers);
+    const std::vector<Vec3> before = wall.state.x;
+    solve_goals(wall.model, wall.state, wall.scratch, part, wall.workers);
+    apply(wall.model, wall.state, wall.scratch, h, part, wall.workers);
+    for (const Index i : touched) {
+        const auto k = static_cast<std::size_t>(i);
+        ASSERT_EQ(wall.state.x[k], whole.state.x[k]);
+        ASSERT_NE(wall.state.x[k], before[k]);
+    }
+    for (std::size_t i = 0; i < inside.size(); ++i)
+        if (!inside[i]) ASSERT_EQ(wall.state.x[i], before[i]);
+}
+
+TEST(Solver, APartAroundNothingIsEmpty) {
+    const Wall wall(rig::free_tube());
+    const WallPart part = part_around(wall.model, {});
+    EXPECT_TRUE(part.groups.empty());
+    EXPECT_TRUE(part.runs.empty());
+}
+
 }  // namespace
 }  // namespace cathlab

@@ -17,9 +17,9 @@ struct ExpectedHash {
     std::uint64_t hash;
 };
 constexpr std::array<ExpectedHash, 3> expected_hashes{{
-    {"tube_wire", 0x4382bd84d2447146},
-    {"tube_catheter", 0xfed34fe0a857a3da},
-    {"fork", 0x6c9fc35ec6823c87},
+    {"tube_wire", 0xcfef888c80804e79},
+    {"tube_catheter", 0xe4d786c433dd345c},
+    {"fork", 0x8334ee18f2a68e55},
 }};
 
 constexpr int steps = 150;
