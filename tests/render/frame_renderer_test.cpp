@@ -173,6 +173,28 @@ TEST(InnerView, ForceOnTheWallShowsAsColour) {
     EXPECT_GT(pressed.rgb[at + 1], calm.rgb[at + 1] + 20);
 }
 
+TEST(InnerView, ATipPressedIntoTheWallSeesNoHole) {
+    FrameRenderer renderer(make_gl_target());
+    FrameDescription f;
+    f.width = f.height = 128;
+    f.show_fluoroscopy = false;
+    const TriMesh ball = sphere(Vec3::Zero(), 12.0, 24);
+    f.lumen.vertices = ball.vertices;
+    f.lumen.triangles = ball.triangles;
+    f.lumen.topology_revision = 1;
+    for (const double depth : {-0.3, 0.0, 0.5}) {  // of the tip in the wall, mm
+        // Looking along the wall, the worst for the near plane.
+        FrameCamera camera;
+        camera.pose.position = Vec3(12.0 + depth, 0, 0);
+        f.inner_camera = camera;
+        Image8 out;
+        renderer.render(f, out);
+        int black = 0;
+        for (std::size_t i = 0; i < out.rgb.size(); i += 3) black += out.rgb[i] == 0 ? 1 : 0;
+        EXPECT_EQ(black, 0) << depth;
+    }
+}
+
 TEST(Frame, LayoutsFillTheirPicture) {
     FrameDescription f;
     f.width = 1024;
