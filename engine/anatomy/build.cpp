@@ -71,6 +71,7 @@ TriMesh make_lumen(const AnatomySpec& spec, const TreeLayout& layout, const TriM
     const double wanted = spec.meshing.face_count;
     double scale = std::sqrt(count_triangles(fine, *layout.tree, law, workers) / wanted);
     TriMesh lumen = fine;
+    const auto off_by = [&] { return static_cast<double>(lumen.triangles.size()) / wanted; };
     for (int pass = 0; pass < 3; ++pass) {
         if (scale > 1.06) {
             const double least = wanted * scale * scale / (1.05 * 1.05);
@@ -82,11 +83,13 @@ TriMesh make_lumen(const AnatomySpec& spec, const TreeLayout& layout, const TriM
                                                     " (or a larger coarse_edge_mm)");
         }
         lumen = remesh(lumen, goal_of(*layout.tree, law, scale, pass == 0 ? 6 : 3), workers);
-        const double ratio = static_cast<double>(lumen.triangles.size()) / wanted;
-        if (std::fabs(ratio - 1.0) < 0.03) break;
-        scale *= std::sqrt(ratio);
-        scale = std::min(scale, 1.06);
+        if (std::fabs(off_by() - 1.0) < 0.03) break;
+        scale = std::min(scale * std::sqrt(off_by()), 1.06);
     }
+    if (std::fabs(off_by() - 1.0) > 0.1)
+        throw UserError(spec.meshing.where, "face_count = " + std::to_string(spec.meshing.face_count) +
+                                                " cannot be met: the lumen of '" + spec.name + "' came out with " +
+                                                std::to_string(lumen.triangles.size()) + " triangles");
     return lumen;
 }
 
@@ -135,8 +138,8 @@ AnatomyModel build_anatomy(const AnatomySpec& spec, const Workers& workers, cons
     for (const Index r : layout.region)
         fine_law.vessel_longest.push_back(
             std::min(m.fine_edge_mm, 0.5 * model.regions[static_cast<std::size_t>(r)].particle_spacing_mm));
-    const double fine_count = count_triangles(raw, tree, fine_law, workers);
-    raw = decimate(raw, static_cast<std::size_t>(1.3 * fine_count));
+    // Straight from the grid's even triangles: decimated first, a straight tube comes in slivers along its whole
+    // length, which remeshing splits for ever and cannot collapse.
     model.fine = remesh(raw, goal_of(tree, fine_law, 1.0, 3), workers);
     require_tree(model.fine, spec.name);
     tell(0.75, "lumen surface");

@@ -15,7 +15,7 @@ namespace cathlab {
 using BuildProgress = std::function<void(double fraction, std::string_view what)>;
 
 /// Version of the builder: goes into content hashes, so that a new builder never takes an old one's cache.
-inline constexpr std::uint64_t anatomy_builder_version = 2;
+inline constexpr std::uint64_t anatomy_builder_version = 3;
 
 /// Builds the parametric tree.  The same bits on any number of threads.  Throws UserError for a spec that cannot be
 /// built: everything that validate() refuses, vessels that touch away from their branch, a lumen too narrow for the

@@ -84,6 +84,24 @@ TEST(Anatomy, AStenosisNarrowsTheLumenByItsDegree) {
     EXPECT_NEAR(elsewhere, 4.0, 0.08);
 }
 
+TEST(Anatomy, ATubeHasTheTrianglesThatWereAskedForHoweverItIsPutTogether) {
+    // Straight as a ruler and fine-grained: the shape that invites slivers as long as the tube.
+    AnatomySpec one = test::straight_tube(5.0, 75.0);
+    one.meshing.voxel_mm = 0.5;
+    AnatomySpec two = one;
+    two.vessels.push_back(two.vessels.front());
+    two.vessels.back().name = "back";
+    two.vessels.back().parent = "tube";
+    two.vessels.back().points = {{0.0, 0.0, 0.0, 5.0}, {0.0, 0.0, -60.0, 5.0}};
+    two.entries.clear();
+    for (AnatomySpec* spec : {&one, &two})
+        for (const int wanted : {2400, 6000}) {
+            spec->meshing.face_count = wanted;
+            const auto got = static_cast<double>(build_anatomy(*spec, Workers(2)).lumen.triangles.size());
+            EXPECT_NEAR(got, wanted, 0.1 * wanted) << spec->vessels.size() << " vessels";
+        }
+}
+
 TEST(Anatomy, ThreadsDoNotChangeAModel) {
     EXPECT_EQ(model_hash(build_anatomy(test::fork(), Workers(1))), model_hash(build_anatomy(test::fork(), Workers(3))));
 }
