@@ -148,13 +148,25 @@ std::vector<Vec3> way_in(const AnatomyModel& anatomy, const EntrySite& entry) {
     return points;
 }
 
+// A device begins within the vessels: laid out further than its way goes, it would stand in the tissue behind them.
+void check_insertion(const EntrySite& entry, const std::vector<Vec3>& way, const SceneDevice& device) {
+    double length = 0.0;
+    for (std::size_t i = 1; i < way.size(); ++i) length += (way[i] - way[i - 1]).norm();
+    if (device.insertion_mm > length)
+        throw UserError(device.where, "insertion_mm: found " + std::to_string(device.insertion_mm) +
+                                          ", but the way in from '" + entry.name + "' is " + std::to_string(length) +
+                                          " mm long");
+}
+
 void add_wire(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) {
     WireSpec wire = load_wire(spec.wire.device);
     wire.friction = spec.wall.friction;
     const EntrySite& entry = find_entry(anatomy, spec.wire);
     for (const WireSection& section : wire.sections) check_width(entry, 0.5 * section.diameter_mm, spec.wire);
+    const std::vector<Vec3> way = way_in(anatomy, entry);
+    check_insertion(entry, way, spec.wire);
     const SheathPose sheath{entry.pose, 60.0};
-    Rod rod(wire, sheath, spec.wire.insertion_mm, way_in(anatomy, entry));
+    Rod rod(wire, sheath, spec.wire.insertion_mm, way);
     world.add(world.create(wire_entity), std::move(rod));
 }
 
@@ -163,6 +175,7 @@ void add_catheter(World& world, const SceneSpec& spec, const AnatomyModel& anato
     catheter.friction = spec.wall.friction;
     const EntrySite& entry = find_entry(anatomy, spec.catheter);
     check_width(entry, catheter.radius_mm(), spec.catheter);
+    check_insertion(entry, way_in(anatomy, entry), spec.catheter);
     const Entity e = world.create(catheter_entity);
     world.add(e, CatheterMount{entry.pose, entry.node, spec.catheter.follow == "wire"});
     world.add(e, initial_state(catheter, spec.catheter.insertion_mm));
@@ -280,6 +293,7 @@ std::unique_ptr<World> build_world(const SceneSpec& spec, const SceneModels& mod
     settings.sample_spacing_mm = spec.step.sample_spacing_mm;
     settings.force_filter_s = spec.force.filter_s;
     settings.wire_penetration_limit_mm = spec.step.wire_penetration_limit_mm;
+    settings.gravity_mm_s2 = spec.step.gravity_mm_s2;
     world->add(top, settings);
     const Entity vessel = world->create(vessel_entity);
     world->add(vessel, models.anatomy);

@@ -23,6 +23,7 @@ struct SceneStep {
     double contact_margin_mm = 1.5;
     double sample_spacing_mm = 1.25;
     double wire_penetration_limit_mm = 0.2;
+    Vec3 gravity_mm_s2 = Vec3::Zero();
 };
 
 /// [anatomy]: exactly one of file (parametric, with its stenoses) and imported.mesh.

@@ -18,7 +18,9 @@ Table<SceneStep> step_table() {
         .number("sample_spacing_mm", &SceneStep::sample_spacing_mm, "mm", {0.2, 10},
                 "of contact samples along the devices")
         .number("wire_penetration_limit_mm", &SceneStep::wire_penetration_limit_mm, "mm", {0.01, 5},
-                "the drive slips while the wire is pressed in deeper than this");
+                "the drive slips while the wire is pressed in deeper than this")
+        .vec3("gravity_mm_s2", &SceneStep::gravity_mm_s2, "mm/s2", {-1e5, 1e5},
+              "acts on the guidewire, in world axes; blood does not buoy it up");
 }
 
 Table<SceneAnatomy> anatomy_section() {

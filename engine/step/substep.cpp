@@ -6,6 +6,7 @@
 #include "core/units.h"
 #include "step/devices.h"
 #include "step/wall_forces.h"
+#include "step/wire_weight.h"
 
 namespace cathlab {
 namespace {
@@ -140,7 +141,7 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
     if (p.wire) command_wire(p, input, h, sums);
     DeviceSamples samples;
     begin_samples(p, catheter_before, samples);
-    if (p.wire) p.wire->predict(h);
+    if (p.wire) p.wire->predict(h, wire_weight(*p.wire, p.settings->gravity_mm_s2));
 
     p.stage("effects");
     WallForces extra(p, context);

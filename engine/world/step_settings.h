@@ -6,6 +6,8 @@
 #include <memory>
 #include <string_view>
 
+#include "core/types.h"
+
 namespace cathlab {
 
 /// Component of the entity "world"; const after load.
@@ -18,6 +20,7 @@ struct StepSettings {
     double force_filter_s = 0.2;             ///< mean filter of the force bar
     double wire_contact_limit_mn = 1000.0;   ///< ... or while one of its contacts carries more than this
     double wire_penetration_limit_mm = 0.2;  ///< the drive slips while the wire is pressed in deeper than this
+    Vec3 gravity_mm_s2 = Vec3::Zero();       ///< acts on the guidewire; the wall's rest pose holds its own weight
 };
 
 /// Component of the world's entity, for benchmarks: called when a stage of the step begins, with the room's name.
