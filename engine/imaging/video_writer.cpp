@@ -35,13 +35,14 @@ void require_writable(const std::string& path, const std::string& part) {
     const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
     if (!fs::is_directory(folder)) throw UserError("cannot write video '" + path + "': no folder " + folder.string());
     std::error_code error;
-    const fs::space_info space = fs::space(folder, error);
-    if (!error && space.available < least_free_bytes) {
-        throw UserError("cannot write video '" + path + "': the disk is full");
-    }
     const bool writable = static_cast<bool>(std::ofstream(part, std::ios::binary));
     fs::remove(part, error);
     if (!writable) throw UserError("cannot write video '" + path + "': " + folder.string() + " is not writable");
+    const fs::space_info space = fs::space(folder, error);
+    if (!error && space.available < least_free_bytes)
+        throw UserError("cannot write video '" + path + "': the disk is full (" +
+                        std::to_string(space.available >> 10) + " kB are free, " +
+                        std::to_string(least_free_bytes >> 20) + " MB are wanted)");
 }
 
 }  // namespace

@@ -129,8 +129,9 @@ std::string find_scene(const std::string& scene, const std::string& data_root) {
         if (fs::is_regular_file(candidate)) return candidate.string();
     if (fs::is_directory(scene)) throw UserError(scene + ": is a folder, a scene file is wanted");
     const auto known = names_in_folder((root / "scenes").string(), ".toml");
-    throw UserError("no scene '" + scene + "'" + did_you_mean(fs::path(scene).stem().string(), known) +
-                    (known.empty() ? "" : " There is: " + comma_list(known)));
+    const std::string near = did_you_mean(fs::path(scene).stem().string(), known);
+    throw UserError("no scene '" + scene + "'" + near +
+                    (known.empty() ? "" : (near.empty() ? "; there is: " : " There is: ") + comma_list(known)));
 }
 
 SceneSpec load_scene(const std::string& path, const std::vector<std::string>& overlays, const std::string& data_root) {
