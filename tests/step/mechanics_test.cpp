@@ -47,6 +47,19 @@ TEST_P(InEveryRig, MomentumIsHandedOverInFullAndNothingLeavesTheLumen) {
 INSTANTIATE_TEST_SUITE_P(AllThree, InEveryRig, testing::Values("tube_wire", "tube_catheter", "fork"),
                          [](const auto& each) { return std::string(each.param); });
 
+TEST(Devices, DeeperInThanTheirWayGoesAreTheUsersError) {
+    for (const char* rig : {"tube_wire", "tube_catheter"}) {
+        SceneSpec spec = rig_spec(rig);
+        spec.wire.insertion_mm = spec.catheter.insertion_mm = 121.0;  // the tube ends 120 mm beyond the sheath
+        try {
+            build_world(spec, rig_models(rig), 1, 1);
+            ADD_FAILURE() << rig;
+        } catch (const UserError& e) {
+            EXPECT_NE(std::string(e.what()).find("insertion_mm: found 121"), std::string::npos) << e.what();
+        }
+    }
+}
+
 TEST(Wire, PushedIntoAClosedEndIsRefusedAndStaysInside) {
     RigRun run("tube_wire");
     double last = 0.0;
