@@ -14,6 +14,9 @@ struct Rail {
     std::vector<double> arc;    ///< mm, from the mouth
     std::vector<Vec3> tangent;  ///< unit
     std::vector<Vec3> side;     ///< unit, square to the tangent: the frame's x axis
+    /// Share of the rail's curvature that the steerable part takes on, 0 to 1: 0 = unbent segments run straight on, 1 =
+    /// they follow the rail (a stiff guidewire inside leads them).
+    double leads = 0.0;
 
     double length() const { return arc.empty() ? 0.0 : arc.back(); }
     Vec3 point(double arc_mm) const;

@@ -23,6 +23,25 @@ std::vector<Piece> pieces_of(const CatheterSpec& spec, const CatheterState& stat
     return pieces;
 }
 
+// The rail's bend between two arc lengths as a vector across the catheter (its x and y), which is turned by `rotation`
+// against the rail's frame, radians.
+Vec2 rail_bend(const Rail& rail, double from, double to, double rotation) {
+    if (rail.leads <= 0.0) return Vec2::Zero();
+    const Vec3 ahead = rail.at(from).orientation.conjugate() * (rail.at(to).orientation * Vec3::UnitZ());
+    const double across = std::sqrt(ahead.x() * ahead.x() + ahead.y() * ahead.y());
+    if (across < 1e-12) return Vec2::Zero();
+    const double angle = rail.leads * det::atan2(across, ahead.z()) / across;
+    const double c = det::cos(rotation), s = det::sin(rotation);
+    return angle * Vec2(c * ahead.x() + s * ahead.y(), c * ahead.y() - s * ahead.x());
+}
+
+// Walks on by `length` with a bend of its own (radians a mm) and the rail's.
+Pose walk(const Pose& start, double length, const Vec2& own, const Vec2& rail) {
+    const Vec2 bend = length * own + rail;
+    const double angle = std::sqrt(bend.squaredNorm());
+    return along_arc(start, length, angle, angle > 0.0 ? det::atan2(bend.y(), bend.x()) : 0.0);
+}
+
 Pose rotated_about_z(const Pose& pose, double angle) {
     return {pose.position, pose.orientation * det::rotation_from_vector(Vec3(0.0, 0.0, angle))};
 }
@@ -74,17 +93,18 @@ CatheterShape shape(const CatheterSpec& spec, const CatheterState& state, const 
     double begin = base_arc;
     for (const Piece& piece : pieces_of(spec, state)) {
         const double end = begin + piece.length;
-        const double exposed = std::min(piece.length, end);  // what is out of the sheath
-        if (exposed > 0.0) {
-            const double curvature = piece.bend / piece.length;
-            const double from = end - exposed;
-            for (; k <= count && arc_of(k) <= end; ++k) {
-                const double length = arc_of(k) - from;
-                if (arc_of(k) > 0.0 || out.points.empty())
-                    add(arc_of(k), along_arc(start, length, curvature * length, piece.direction).position);
-            }
-            start = along_arc(start, exposed, curvature * exposed, piece.direction);
+        double at = std::max(begin, std::min(end, 0.0));  // what is out of the sheath
+        const Vec2 own = piece.bend / piece.length * Vec2(det::cos(piece.direction), det::sin(piece.direction));
+        const auto go = [&](double to) {
+            if (to <= at) return;
+            start = walk(start, to - at, own, rail_bend(rail, at, to, state.rotation_rad));
+            at = to;
+        };
+        for (; k <= count && arc_of(k) <= end; ++k) {
+            go(arc_of(k));
+            if (arc_of(k) > 0.0 || out.points.empty()) add(arc_of(k), start.position);
         }
+        go(end);
         begin = end;
     }
     out.tip = start;

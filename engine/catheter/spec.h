@@ -29,9 +29,11 @@ struct CatheterSpec {
     double tip_length_mm = 3.0;     ///< straight, after the last segment
     double max_speed_mm_s = 100.0;  ///< fastest insertion and withdrawal
     double max_rotation_deg_s = 360.0;
-    double friction = 0.1;              ///< Coulomb coefficient against the wall
-    double force_limit_n = 3.0;         ///< a sample that carries more moves no further into the wall
-    double penetration_limit_mm = 0.5;  ///< deepest predicted penetration that a command may cause
+    double bending_stiffness_n_mm2 = 200.0;  ///< EI of the steerable part; a stiffer guidewire inside leads it
+    double friction = 0.1;                   ///< Coulomb coefficient against the wall
+    double force_limit_n = 3.0;              ///< the sum of its contact forces beyond which it gives way (give_way.h)
+    double tip_force_limit_n = 3.0;          ///< the same for the last 10 mm
+    double penetration_limit_mm = 0.5;       ///< deepest predicted penetration that a command may cause
     std::string material = "polymer";
     std::string tip_material = "tungsten_polymer";  ///< of the marker band
     double tip_marker_length_mm = 2.0;              ///< of that band, measured from the tip; at most tip_length_mm

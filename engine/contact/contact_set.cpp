@@ -331,6 +331,21 @@ double ContactSet::staleness() const {
     return std::sqrt(worst);
 }
 
+double ContactSet::true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
+                              std::span<const DeviceSample> samples_now, double force_mn) const {
+    double depth = 0.0;
+    Index last = -1;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+        if (rows_[r].multiplier <= force_mn || wall_[r].sample == last) continue;
+        last = wall_[r].sample;
+        const DeviceSample& s = samples_now[at(last)];
+        const SurfacePoint nearest =
+            closest(model, surface, s.position, settings_.recovery_mm, memory_.triangle[at(last)]);
+        if (nearest.found()) depth = std::max(depth, s.radius - nearest.signed_distance);
+    }
+    return depth;
+}
+
 std::span<ChainRow> ContactSet::chain_rows(Index device) {
     const auto range =
         std::equal_range(memory_.device.begin(), memory_.device.end(), static_cast<std::int64_t>(device));

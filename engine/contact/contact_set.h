@@ -95,6 +95,11 @@ public:
     /// so: its normal and its wall point were true for another place.  Where it is large, detect again.
     double staleness() const;
 
+    /// How deep, mm, >= 0, the samples that carry more than `force_mn` are in the surface as it is now.  Rows hold the
+    /// wall's facets as they lay at detect; under a tip that presses hard they turn.  Where it is large, detect again.
+    double true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
+                      std::span<const DeviceSample> samples_now, double force_mn) const;
+
     /// The rows of one device for the chain solve, contiguous, ascending from the tip; multipliers are in and out.
     std::span<ChainRow> chain_rows(Index device);
 

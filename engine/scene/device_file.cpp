@@ -79,8 +79,12 @@ Table<CatheterFile> make_catheter_table() {
             .number("max_speed_mm_s", &CatheterSpec::max_speed_mm_s, "mm/s", {0.1, 1000}, "fastest insertion")
             .number("max_rotation_deg_s", &CatheterSpec::max_rotation_deg_s, "deg/s", {0.1, 10000}, "fastest turning")
             .number("friction", &CatheterSpec::friction, "1", {0, 2}, "Coulomb coefficient against the wall")
-            .number("force_limit_n", &CatheterSpec::force_limit_n, "N", {0.001, 1000},
-                    "a command that would press harder is refused in part")
+            .number("bending_stiffness_n_mm2", &CatheterSpec::bending_stiffness_n_mm2, "N mm2", {0.1, 1e6},
+                    "EI of the steerable part; a stiffer guidewire inside leads it along the vessel")
+            .number("force_limit_n", &CatheterSpec::force_limit_n, "N", {0.001, 100},
+                    "sum of contact forces beyond which the catheter gives way")
+            .number("tip_force_limit_n", &CatheterSpec::tip_force_limit_n, "N", {0.001, 100},
+                    "the same for its last 10 mm")
             .number("penetration_limit_mm", &CatheterSpec::penetration_limit_mm, "mm", {0.001, 10},
                     "a command that would press deeper is refused in part")
             .text("material", &CatheterSpec::material, "a name of assets/materials")

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catheter/give_way.h"
 #include "core/deterministic_math.h"
 #include "core/units.h"
 
 namespace cathlab {
 namespace {
 
+// From this share of its force limit on the catheter gives way, at the limit at full speed.
+constexpr double yielding_from = 0.75;
 // How far a command may drive the catheter into the wall in one substep, beyond what the wall has yielded: the wall is
 // then never more than this behind, and the device's own limit (0.5 mm) is kept with a margin for its folds.
 constexpr double depth_a_substep_mm = 0.15;
@@ -39,6 +42,26 @@ Vec3 point_at(const CatheterShape& shape, double arc) {
     return shape.points[i - 1] + t * (shape.points[i] - shape.points[i - 1]);
 }
 
+// Two elastic rods in one another take the curvatures that either would have alone in the ratio of their stiffnesses:
+// the mean over the steerable part of EI_wire / (EI_wire + EI_catheter), 0 where no wire is.
+double led_by_wire(const Parts& p) {
+    if (!p.wire || p.catheter->inner_diameter_mm <= 0.0) return 0.0;
+    const double steerable = p.catheter->steerable_length_mm();
+    const double base = base_arc_mm(*p.catheter, *p.catheter_state);
+    double sum = 0.0;
+    double front = p.wire->insertion_mm();  // of a section, mm from the mouth
+    for (const WireSection& section : p.wire->spec().sections) {
+        const bool last = &section == &p.wire->spec().sections.back();
+        const double back = last ? base : front - section.length_mm;
+        const double inside = std::min(front, base + steerable) - std::max(back, base);
+        if (inside > 0.0)
+            sum += inside * section.bending_stiffness_n_mm2 /
+                   (section.bending_stiffness_n_mm2 + p.catheter->bending_stiffness_n_mm2);
+        front = back;
+    }
+    return sum / steerable;
+}
+
 Rail current_rail(const Parts& p) {
     const CatheterRoute& route = *p.catheter_route;
     Rail rail = build_rail(route.graph, route.path, p.catheter_state->route, p.mount->mouth);
@@ -56,18 +79,30 @@ Rail current_rail(const Parts& p) {
             rail = blend(rail, wire_rail, wire_lead(mouth_arc, base_arc_mm(*p.catheter, *p.catheter_state)));
         }
     }
+    rail.leads = led_by_wire(p);
     return rail;
 }
 
 // Rows of the last substep, seen from where the catheter stands now.  The force limit is the whole catheter's: at the
-// limit no sample may go further into the wall.
-std::vector<WallLimit> wall_limits(const Parts& p, const CatheterShape& now) {
+// limit no sample may go further into the wall, and beyond it the catheter gives way to what pushes it.
+struct WallAround {
     std::vector<WallLimit> limits;
+    std::vector<WallPush> pushes;
+    double load = 0.0;  ///< of all force or of that at the tip, the larger share of its limit
+};
+
+WallAround wall_around(const Parts& p, const CatheterShape& now) {
+    WallAround around;
     const auto rows = p.contacts->rows();
     const auto wall = p.contacts->wall_rows();
-    double force = 0.0;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        if (wall[i].device == catheter_device) force += rows[i].multiplier;
+    double all = 0.0, tip = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (wall[i].device != catheter_device) continue;
+        all += rows[i].multiplier;
+        if (wall[i].arc_mm <= p.contacts->settings().tip_length_mm) tip += rows[i].multiplier;
+    }
+    around.load = std::max(all / (p.catheter->force_limit_n * units::newton),
+                           tip / (p.catheter->tip_force_limit_n * units::newton));
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (wall[i].device != catheter_device) continue;
         const auto from_tip = static_cast<std::size_t>(std::floor(wall[i].arc_mm / catheter_spacing_mm + 0.5));
@@ -77,17 +112,20 @@ std::vector<WallLimit> wall_limits(const Parts& p, const CatheterShape& now) {
         limit.point = static_cast<Index>(point);
         limit.normal = rows[i].normal;
         limit.gap = rows[i].normal.dot(now.points[point] - wall[i].point) - wall[i].offset;
-        limit.force = force;
+        limit.force = around.load * p.catheter->force_limit_n * units::newton;
         limit.penetration_limit = std::min(p.catheter->penetration_limit_mm, depth_a_substep_mm);
         limit.force_limit = p.catheter->force_limit_n * units::newton;
-        limits.push_back(limit);
+        around.limits.push_back(limit);
+        if (rows[i].multiplier > 0.0)
+            around.pushes.push_back({limit.point, rows[i].multiplier * rows[i].normal + rows[i].tangent_force});
     }
-    return limits;
+    return around;
 }
 
 // Near the wall no sample may run further than this in a substep: rows hold the wall's place and direction as they were
 // when it began, and a tip that rushes along a dented wall would leave both behind.
 constexpr double run_a_substep_mm = 0.2;
+constexpr double swung_wire_mn = 50.0;
 
 double pace_at_the_wall(const CatheterSpec& spec, const CatheterState& state, const CatheterCommand& command,
                         const Rail& rail, const CatheterShape& start, double h, double limit_mm) {
@@ -160,9 +198,23 @@ double move_catheter(Parts& p, const Input& input, double h) {
 
     const double steerable = p.catheter->steerable_length_mm();
     const double limit = insertion_limit(route.graph, route.path, state.route, steerable + 60.0);
-    const std::vector<WallLimit> limits = wall_limits(p, start);
-    const bool held = p.wire && wire_presses(*p.wire_drive, *p.settings) && hold_back(command, state);
-    const double pace = limits.empty() ? 1.0 : pace_at_the_wall(*p.catheter, state, command, rail, start, h, limit);
+    WallAround around = wall_around(p, start);
+    std::vector<WallLimit>& limits = around.limits;
+    bool held = p.wire && wire_presses(*p.wire_drive, *p.settings) && hold_back(command, state);
+    if (around.load > yielding_from) {
+        const double share = std::min(1.0, (around.load - yielding_from) / (1.0 - yielding_from));
+        const CatheterCommand yielding = give_way(*p.catheter, state, rail, start, around.pushes, share, h);
+        // What is left of the operator's push; bends are targets and yield as a whole.
+        const double own = command.advance_mm > 0.0 ? (1.0 - share) * command.advance_mm : command.advance_mm;
+        command = yielding;
+        command.advance_mm += own;
+        // On its way out of the load depth alone is left to limit.
+        for (WallLimit& l : limits) l.force = 0.0;
+        held = true;
+    }
+    // A wire that sticks out and touches the wall is swung by the catheter: then it, too, is at the wall.
+    const bool at_the_wall = !limits.empty() || (p.wire && p.wire_drive->contact_mn > swung_wire_mn);
+    const double pace = at_the_wall ? pace_at_the_wall(*p.catheter, state, command, rail, start, h, limit) : 1.0;
     command.advance_mm *= pace;
     command.rotate_rad *= pace;
     CatheterTaken taken = take(*p.catheter, state, command, rail, limits, pace * h, limit);

@@ -24,7 +24,10 @@ constexpr double wire_depth_mm = 0.1;
 constexpr double front_mm = 3.0;
 // A pass is repeated, with contacts looked for anew, while device and wall slid past each other by more than this.
 constexpr double stale_mm = 0.2;
-constexpr int extra_passes = 2;
+// ... or while a sample that presses with more than so much is deeper in the wall, as it then lies, than its rows say.
+constexpr double pressed_mn = 100.0;
+constexpr double pressed_depth_mm = 0.25;
+constexpr int extra_passes = 3;
 // Within a step the lumen surface follows the wall up to this far from the devices.
 constexpr double surface_reach_mm = 6.0;
 
@@ -60,6 +63,15 @@ void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<Ch
     }
     p.wire->solve(h, rows);
     std::copy(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(wall_rows.size()), wall_rows.begin());
+}
+
+// How deep the samples that press hard are in the wall as the last pass left it.
+double pressed_depth(Parts& p, const DeviceSamples& samples, const StepSums& sums) {
+    const auto rows = p.contacts->rows();
+    if (std::none_of(rows.begin(), rows.end(), [](const ChainRow& row) { return row.multiplier > pressed_mn; }))
+        return 0.0;
+    update(*p.surface, p.wall_state->x, *sums.surface_near, *p.surface_state, p.world->workers());
+    return p.contacts->true_depth(*p.surface, *p.surface_state, samples.list, pressed_mn);
 }
 
 // Rows for the samples where they are now, against the wall at `particles`.  The surface follows as a whole once a
@@ -209,7 +221,7 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
         refresh_samples(p, samples);
         p.contacts->refresh(samples.list, state.x);
         if (pass + 1 == passes && passes < p.settings->iterations + extra_passes &&
-            p.contacts->staleness() > stale_mm) {
+            (p.contacts->staleness() > stale_mm || pressed_depth(p, samples, sums) > pressed_depth_mm)) {
             find_contacts(p, samples, state.x, sums);
             looked_again = true;
             ++passes;
