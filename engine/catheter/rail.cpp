@@ -125,6 +125,13 @@ Pose Rail::at(double arc_mm) const {
     return pose;
 }
 
+double Rail::led(double from_mm, double to_mm) const {
+    double sum = 0.0;
+    for (const RailLead& lead : leads)
+        sum += lead.share * std::max(0.0, std::min(to_mm, lead.to_mm) - std::max(from_mm, lead.from_mm));
+    return sum / (to_mm - from_mm);
+}
+
 double rail_support_mm(const RailShape& shape) {
     return shape.smoothing_max_mm + 8.0;
 }

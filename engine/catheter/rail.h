@@ -8,20 +8,26 @@
 
 namespace cathlab {
 
+/// A stretch of the rail on which a guidewire inside leads the steerable part.
+struct RailLead {
+    double from_mm = 0.0, to_mm = 0.0;  ///< arc lengths
+    double share = 0.0;                 ///< 0 = the segments alone decide, 1 = they follow the rail
+};
+
 /// A polyline with arc length and rotation-minimising frames.  Arc 0 = the sheath's mouth.
 struct Rail {
-    std::vector<Vec3> points;   ///< mm, world
-    std::vector<double> arc;    ///< mm, from the mouth
-    std::vector<Vec3> tangent;  ///< unit
-    std::vector<Vec3> side;     ///< unit, square to the tangent: the frame's x axis
-    /// Share of the rail's curvature that the steerable part takes on, 0 to 1: 0 = unbent segments run straight on, 1 =
-    /// they follow the rail (a stiff guidewire inside leads them).
-    double leads = 0.0;
+    std::vector<Vec3> points;     ///< mm, world
+    std::vector<double> arc;      ///< mm, from the mouth
+    std::vector<Vec3> tangent;    ///< unit
+    std::vector<Vec3> side;       ///< unit, square to the tangent: the frame's x axis
+    std::vector<RailLead> leads;  ///< apart from each other; elsewhere the share is 0
 
     double length() const { return arc.empty() ? 0.0 : arc.back(); }
     Vec3 point(double arc_mm) const;
     /// The frame at an arc length (z forward, x = side).  Beyond either end the rail goes on straight.
     Pose at(double arc_mm) const;
+    /// Mean share between two arc lengths, from < to.
+    double led(double from_mm, double to_mm) const;
 };
 
 struct RailShape {

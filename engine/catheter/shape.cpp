@@ -26,18 +26,20 @@ std::vector<Piece> pieces_of(const CatheterSpec& spec, const CatheterState& stat
 // The rail's bend between two arc lengths as a vector across the catheter (its x and y), which is turned by `rotation`
 // against the rail's frame, radians.
 Vec2 rail_bend(const Rail& rail, double from, double to, double rotation) {
-    if (rail.leads <= 0.0) return Vec2::Zero();
     const Vec3 ahead = rail.at(from).orientation.conjugate() * (rail.at(to).orientation * Vec3::UnitZ());
     const double across = std::sqrt(ahead.x() * ahead.x() + ahead.y() * ahead.y());
     if (across < 1e-12) return Vec2::Zero();
-    const double angle = rail.leads * det::atan2(across, ahead.z()) / across;
+    const double angle = det::atan2(across, ahead.z()) / across;
     const double c = det::cos(rotation), s = det::sin(rotation);
     return angle * Vec2(c * ahead.x() + s * ahead.y(), c * ahead.y() - s * ahead.x());
 }
 
-// Walks on by `length` with a bend of its own (radians a mm) and the rail's.
-Pose walk(const Pose& start, double length, const Vec2& own, const Vec2& rail) {
-    const Vec2 bend = length * own + rail;
+// Walks on with a bend of its own (radians a mm), of which a guidewire inside leaves a share, and the rest the rail's.
+Pose walk(const Pose& start, const Rail& rail, double from, double to, const Vec2& own, double rotation) {
+    const double length = to - from;
+    const double led = rail.led(from, to);
+    Vec2 bend = length * own;
+    if (led > 0.0) bend = (1.0 - led) * bend + led * rail_bend(rail, from, to, rotation);
     const double angle = std::sqrt(bend.squaredNorm());
     return along_arc(start, length, angle, angle > 0.0 ? det::atan2(bend.y(), bend.x()) : 0.0);
 }
@@ -97,7 +99,7 @@ CatheterShape shape(const CatheterSpec& spec, const CatheterState& state, const 
         const Vec2 own = piece.bend / piece.length * Vec2(det::cos(piece.direction), det::sin(piece.direction));
         const auto go = [&](double to) {
             if (to <= at) return;
-            start = walk(start, to - at, own, rail_bend(rail, at, to, state.rotation_rad));
+            start = walk(start, rail, at, to, own, state.rotation_rad);
             at = to;
         };
         for (; k <= count && arc_of(k) <= end; ++k) {

@@ -25,10 +25,10 @@ struct CatheterShape {
 /// Exact for bend = 0 (straight on).
 Pose along_arc(const Pose& start, double length, double bend, double direction);
 
-/// The catheter of a state on a rail.  The curvature of its steerable part is that of its own bends plus the share of
-/// the rail's that the rail leads it by (Rail::leads), as of two elastic rods in one another.  What is still inside the
-/// sheath is straight: the segments come out tip first, each with its curvature (bend / length), so insertion moves
-/// nothing by a jump.
+/// The catheter of a state on a rail.  The curvature of its steerable part is that of its own bends, and where a
+/// guidewire leads it (Rail::leads) the mean of its own and the rail's, as of two elastic rods in one another.  What is
+/// still inside the sheath is straight: the segments come out tip first, each with its curvature (bend / length), so
+/// insertion moves nothing by a jump.
 CatheterShape shape(const CatheterSpec& spec, const CatheterState& state, const Rail& rail,
                     double spacing_mm = catheter_spacing_mm);
 

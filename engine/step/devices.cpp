@@ -42,24 +42,21 @@ Vec3 point_at(const CatheterShape& shape, double arc) {
     return shape.points[i - 1] + t * (shape.points[i] - shape.points[i - 1]);
 }
 
-// Two elastic rods in one another take the curvatures that either would have alone in the ratio of their stiffnesses:
-// the mean over the steerable part of EI_wire / (EI_wire + EI_catheter), 0 where no wire is.
-double led_by_wire(const Parts& p) {
-    if (!p.wire || p.catheter->inner_diameter_mm <= 0.0) return 0.0;
-    const double steerable = p.catheter->steerable_length_mm();
-    const double base = base_arc_mm(*p.catheter, *p.catheter_state);
-    double sum = 0.0;
+// Two elastic rods in one another take the curvatures that either would have alone in the ratio of their stiffnesses: a
+// stiff guidewire inside leads the steerable part along the vessel and is hardly bent by it.
+std::vector<RailLead> led_by_wire(const Parts& p) {
+    std::vector<RailLead> leads;
+    if (!p.wire || p.catheter->inner_diameter_mm <= 0.0) return leads;
     double front = p.wire->insertion_mm();  // of a section, mm from the mouth
     for (const WireSection& section : p.wire->spec().sections) {
         const bool last = &section == &p.wire->spec().sections.back();
-        const double back = last ? base : front - section.length_mm;
-        const double inside = std::min(front, base + steerable) - std::max(back, base);
-        if (inside > 0.0)
-            sum += inside * section.bending_stiffness_n_mm2 /
-                   (section.bending_stiffness_n_mm2 + p.catheter->bending_stiffness_n_mm2);
+        const double back = last ? 0.0 : front - section.length_mm;
+        if (front <= 0.0) break;
+        const double ei = section.bending_stiffness_n_mm2;
+        leads.push_back({back, front, ei / (ei + p.catheter->bending_stiffness_n_mm2)});
         front = back;
     }
-    return sum / steerable;
+    return leads;
 }
 
 Rail current_rail(const Parts& p) {

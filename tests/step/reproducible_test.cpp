@@ -19,7 +19,7 @@ struct ExpectedHash {
 constexpr std::array<ExpectedHash, 3> expected_hashes{{
     {"tube_wire", 0x6b4226812072e5a2},
     {"tube_catheter", 0x223a9e52be5617cf},
-    {"fork", 0x5e057887cd3d1e96},
+    {"fork", 0x858c5aeaf1c315e8},
 }};
 
 constexpr int steps = 150;
