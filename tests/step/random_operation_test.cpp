@@ -1,0 +1,152 @@
+// Full-speed random operation of both devices: nothing leaves the lumen and nothing bursts, whatever the hands do.
+//
+// CATHLAB_RANDOM_SECONDS lengthens each run (docs/validation.md).
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+
+#include "core/random.h"
+#include "scene/temporary_folder.h"
+#include "step/inside_account.h"
+#include "step/rig.h"
+
+namespace cathlab {
+namespace {
+
+constexpr double limit_mm = 0.5;
+
+/// Seconds of simulated time of a run.
+double run_seconds(double otherwise) {
+    const char* text = std::getenv("CATHLAB_RANDOM_SECONDS");
+    if (!text) return otherwise;
+    char* end = nullptr;
+    const double seconds = std::strtod(text, &end);
+    if (end != text && *end == '\0' && seconds > 0.0 && seconds < 1e6) return seconds;
+    ADD_FAILURE() << "CATHLAB_RANDOM_SECONDS: found '" << text << "', allowed are seconds above 0";
+    return otherwise;
+}
+
+/// New commands every 0.7 s, mostly at full speed and mostly inward: any device, turn, bend and direction.
+Input random_hands(std::uint64_t seed, double time_s) {
+    const auto command = static_cast<std::uint64_t>(time_s / 0.7);
+    const auto draw = [&](std::uint64_t i) { return 2.0 * random_uniform(seed, RandomStream::test, command, i) - 1.0; };
+    Input input;
+    input.device = draw(0) > 0.2 ? 1.0 : 0.0;
+    input.advance = draw(1) > -0.3 ? 100.0 * (draw(9) > 0.0 ? 1.0 : draw(1)) : -100.0;
+    input.rotate = 360.0 * draw(2);
+    input.proximal_bend = 60.0 * std::fabs(draw(3));
+    input.distal_bend = 140.0 * std::fabs(draw(4));
+    input.proximal_direction = 180.0 * draw(5);
+    input.distal_direction = 180.0 * draw(6);
+    return input;
+}
+
+std::string place(const DevicePoint& point, double time_s) {
+    std::ostringstream text;
+    text << "at " << time_s << " s, " << (point.device == wire_device ? "wire" : "catheter") << ", " << point.arc_mm
+         << " mm from its tip, at " << point.position.transpose();
+    return text.str();
+}
+
+/// Operates both devices and looks after every step.
+void operate_at_random(const SceneSpec& spec, const SceneModels& models, std::uint64_t seed, double seconds) {
+    RigRun run(build_world(spec, models, seed, 1));
+    LumenSurfaceState surface;
+    double deepest = 0.0;
+    std::string where = "nowhere";
+    int too_deep = 0, outside = 0;
+    double imbalance = 0.0, touched = 0.0;
+    const double dt = run.parts.settings->dt;
+    const auto steps = static_cast<int>(std::lround(seconds / dt));
+    for (int k = 0; k < steps; ++k) {
+        run.step(random_hands(seed, k * dt));
+        ASSERT_TRUE(run.finite()) << "at " << run.world->time_s << " s";
+        const InsideAccount account = inside_account(run.parts, surface);
+        if (account.deepest_mm > deepest) {
+            deepest = account.deepest_mm;
+            where = place(account.deepest, run.world->time_s);
+        }
+        too_deep += account.deepest_mm >= limit_mm ? 1 : 0;
+        outside += account.outside > 0 ? 1 : 0;
+        imbalance = std::max(imbalance, run.channels.momentum_residual);
+        touched = std::max({touched, run.channels.wire_force_mn, run.channels.catheter_force_mn});
+    }
+    EXPECT_LT(deepest, limit_mm) << where << "; deeper than allowed in " << too_deep << " steps";
+    EXPECT_EQ(outside, 0) << "steps with a part of a device beyond the wall";
+    EXPECT_LT(imbalance, 1e-6);
+    EXPECT_GT(touched, 1.0) << "nothing was touched";
+    std::cout << "seed " << seed << ", " << seconds << " s: deepest " << deepest << " mm " << where
+              << "; imbalance of forces " << imbalance << "; largest force " << touched << " mN" << std::endl;
+}
+
+constexpr std::uint64_t seeds = 5;
+
+/// Beside the test program: to build these anatomies takes longer than to operate in them.
+std::string models_folder() {
+    std::error_code error;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+    return error ? "" : (program.parent_path() / "models").string();
+}
+
+void operate_with_every_seed(const SceneSpec& spec, double seconds) {
+    BuildOptions options;
+    options.cache_folder = models_folder();
+    const auto models = build_models(spec, options);
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        operate_at_random(spec, *models, seed, seconds);
+    }
+}
+
+TEST(RandomFullSpeedOperation, NeverLeavesTheAdultsVessels) {
+    const TemporaryFolder folder;
+    const SceneSpec spec = load_scene(folder.write("adult.toml", R"(
+schema = 1
+name = "full-speed"
+[anatomy]
+file = "adult"
+[wire]
+enabled = true
+device = "amplatz-super-stiff"
+entry = "right_femoral"
+insertion_mm = 60
+[catheter]
+enabled = true
+device = "magellan-6f"
+entry = "right_femoral"
+insertion_mm = 20
+[heart]
+enabled = true
+[effects.respiration]
+)"),
+                                      {}, CATHLAB_SOURCE_DIR);
+    operate_with_every_seed(spec, run_seconds(6.0));
+}
+
+TEST(RandomFullSpeedOperation, NeverLeavesThePatientsVessels) {
+    const std::string mesh = std::string(CATHLAB_SHARED_DATA) + "/anatomy/arch-and-carotids.obj";
+    if (!std::filesystem::exists(mesh)) GTEST_SKIP() << mesh << " is not there";
+    const std::string scene = std::string(CATHLAB_SOURCE_DIR) + "/scenes/imported.toml";
+    operate_with_every_seed(load_scene(scene, {}, CATHLAB_SOURCE_DIR), run_seconds(3.0));
+}
+
+TEST(InsideAccount, ReadsTheDepthByWhichATubeIsShifted) {
+    RigRun run("tube_wire");
+    LumenSurfaceState surface;
+    const InsideAccount before = inside_account(run.parts, surface);
+    EXPECT_EQ(before.deepest_mm, 0.0);
+    EXPECT_GT(before.points, 50U);
+    for (const double shift : {5.0, 7.0}) {
+        RigRun shifted("tube_wire");
+        for (Vec3& x : shifted.parts.wall_state->x) x.x() += shift;
+        const InsideAccount after = inside_account(shifted.parts, surface);
+        // The wire lies in the axis of a tube of 5 mm radius.
+        EXPECT_NEAR(after.deepest_mm, shift - 5.0 + after.deepest.radius, 0.3);
+        EXPECT_EQ(after.outside > 0, shift > 6.0);
+    }
+}
+
+}  // namespace
+}  // namespace cathlab
