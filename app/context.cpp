@@ -28,7 +28,7 @@ std::string environment(const char* name) {
 
 std::string find_data_root() {
     std::error_code error;
-    if (const std::string named = environment("CATHLAB_DATA_DIR"); !named.empty()) {
+    if (std::string named = environment("CATHLAB_DATA_DIR"); !named.empty()) {
         if (fs::is_directory(fs::path(named) / "assets", error)) return named;
         throw UserError("CATHLAB_DATA_DIR is '" + named + "', which holds no folder assets", true);
     }
@@ -48,7 +48,7 @@ std::string find_data_root() {
 }
 
 std::string find_cache_folder() {
-    if (const std::string named = environment("CATHLAB_CACHE_DIR"); !named.empty()) return named;
+    if (std::string named = environment("CATHLAB_CACHE_DIR"); !named.empty()) return named;
     if (const std::string cache = environment("XDG_CACHE_HOME"); !cache.empty()) return cache + "/cathlab";
     if (const std::string home = environment("HOME"); !home.empty()) return home + "/.cache/cathlab";
     return "";

@@ -126,6 +126,7 @@ double atan(double x) {
     const double a = std::fabs(x);
     const bool steep = a > 1.0;
     const double y = steep ? 1.0 / a : a;
+    // 0 <= y <= 1, and either neighbour of a tie serves.  NOLINTNEXTLINE(bugprone-incorrect-roundings)
     const int k = static_cast<int>(y * 8.0 + 0.5);
     const double c = 0.125 * static_cast<double>(k);
     const double t = (y - c) / (1.0 + y * c);

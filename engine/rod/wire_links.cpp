@@ -39,7 +39,7 @@ std::vector<WireLink> cut_into_links(const WireSpec& spec) {
         const double length = last ? spec.length_mm - start : section.length_mm;
         const double longest = section.link_length_mm > 0.0 ? section.link_length_mm : spec.link_length_mm;
         const double count = std::max(1.0, std::ceil(length / longest - 1e-9));
-        for (double k = 0.0; k < count; k += 1.0)
+        for (int k = 0; k < count; ++k)
             links.push_back(make_link(section, static_cast<Index>(i), start + length * k / count, length / count));
         start += length;
     }

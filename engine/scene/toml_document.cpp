@@ -26,9 +26,9 @@ TomlNode convert_table(const toml::table& source, const FileName& file) {
         TomlNode node = convert(value, file);
         node.key_line = static_cast<int>(key.source().begin.line);
         if (node.line == 0) node.line = node.key_line;
-        out.members.emplace_back(std::string(key.str()), std::move(node));
+        out.members.push_back({std::string(key.str()), std::move(node)});
     }
-    std::sort(out.members.begin(), out.members.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::sort(out.members.begin(), out.members.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
     return out;
 }
 
@@ -170,13 +170,13 @@ TomlNode load_toml(const std::string& path) {
 void merge_toml(TomlNode& base, TomlNode overlay) {
     for (auto& [key, value] : overlay.members) {
         const auto at = std::lower_bound(base.members.begin(), base.members.end(), key,
-                                         [](const auto& member, const std::string& k) { return member.first < k; });
-        if (at == base.members.end() || at->first != key)
-            base.members.emplace(at, key, std::move(value));
-        else if (at->second.kind == TomlKind::table && value.kind == TomlKind::table)
-            merge_toml(at->second, std::move(value));
+                                         [](const auto& member, const std::string& k) { return member.key < k; });
+        if (at == base.members.end() || at->key != key)
+            base.members.insert(at, {key, std::move(value)});
+        else if (at->node.kind == TomlKind::table && value.kind == TomlKind::table)
+            merge_toml(at->node, std::move(value));
         else
-            at->second = std::move(value);
+            at->node = std::move(value);
     }
 }
 

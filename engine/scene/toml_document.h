@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/errors.h"
@@ -13,15 +12,17 @@ namespace cathlab {
 
 enum class TomlKind { table, array, text, integer, number, boolean, other };
 
+struct TomlMember;
+
 struct TomlNode {
     TomlKind kind = TomlKind::table;
     std::shared_ptr<const std::string> file;
     int line = 0;      ///< where the value stands; 0 = unknown
     int key_line = 0;  ///< where its key stands
 
-    std::vector<std::pair<std::string, TomlNode>> members;  ///< of a table, sorted by key
-    std::vector<TomlNode> items;                            ///< of an array
-    std::string text;                                       ///< of a text; of `other` (a date, a time) its TOML form
+    std::vector<TomlMember> members;  ///< of a table, sorted by key
+    std::vector<TomlNode> items;      ///< of an array
+    std::string text;                 ///< of a text; of `other` (a date, a time) its TOML form
     std::int64_t integer = 0;
     double number = 0.0;  ///< of a number or an integer
     bool boolean = false;
@@ -31,6 +32,11 @@ struct TomlNode {
     SourcePlace place(const std::string& key = "") const;
     /// "the text 'abc'", "the integer 3", "a table": what was found, for sentences.
     std::string describe() const;
+};
+
+struct TomlMember {
+    std::string key;
+    TomlNode node;
 };
 
 /// Reads a TOML file of at most 16 MB; throws UserError with file:line where it is missing, a folder, not text, not
