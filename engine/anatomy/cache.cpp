@@ -177,7 +177,6 @@ void write_cache(const std::string& path, std::uint64_t key, const AnatomyModel&
     head.item(key);
     head.item(hash_of(body.bytes));
     // a name of its own for each process and model, renamed when whole: two builders at once cannot mix their bytes
-    static_assert(sizeof(&model) == sizeof(std::uintptr_t));
     const std::string part =
         path + "." + hash_text(hash_of(body.bytes) ^ reinterpret_cast<std::uintptr_t>(&body)) + ".part";
     std::error_code error;

@@ -68,9 +68,9 @@ private:
 
     /// Collapses the shortest edge of triangles that are needles.
     void mend_needles() {
-        for (std::size_t i = 0; i < t_.size(); ++i) {
-            if (t_[i][0] < 0) continue;
-            const Triangle t = t_[i];
+        for (const Triangle& current : t_) {
+            if (current[0] < 0) continue;
+            const Triangle t = current;  // as it is before it collapses
             double shortest = 1e300;
             double longest = 0.0;
             int at_edge = 0;

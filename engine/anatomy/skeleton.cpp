@@ -124,7 +124,8 @@ Distances spread(const Lattice& lattice, const std::vector<Index>& sources, bool
         queue.emplace(0.0, s);
     }
     while (!queue.empty()) {
-        const auto [value, n] = queue.top();
+        const double value = queue.top().first;
+        const Index n = queue.top().second;
         queue.pop();
         if (value > d.value[static_cast<std::size_t>(n)]) continue;
         lattice.each_neighbour(n, [&](Index m, double length) {

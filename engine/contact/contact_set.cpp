@@ -14,7 +14,7 @@ namespace {
 constexpr double near_mm = 0.1;
 
 // Neighbouring samples that look at the same part of the wall, and the ball that they may fill.
-constexpr std::size_t samples_together = 8;
+constexpr std::size_t samples_together = 4;
 constexpr double ball_mm = 12.0;
 
 std::size_t at(Index i) {

@@ -22,9 +22,9 @@
 // for a substep the curvature of the wall would otherwise act one substep late, and a light tip under a large force
 // would swing.
 //
-// Nothing tunnels: a sample at rest or moving at the devices' top speed (100 mm/s: 0.4 mm in a substep of 4 ms; 0.8 mm
+// Nothing tunnels: a sample at rest or moving at the devices' top speed (100 mm/s: 0.5 mm in a substep of 5 ms; 1 mm
 // with the wall coming to meet it) was within that distance of where it is found now, inside.  Rows are made for gaps
-// up to `margin` (which must exceed 0.8 mm: a row that is still open is speculative, it lets the sample come to the
+// up to `margin` (which must exceed 1 mm: a row that is still open is speculative, it lets the sample come to the
 // surface in this substep and no further), and for samples already outside by up to `recovery` on the side they came
 // from (closest_point.h, hint).  What moves further in one substep than half the margin is swept: the first triangle
 // that its path leaves the lumen through takes the place of the hint, whatever lies behind it.
@@ -77,7 +77,7 @@ public:
     explicit ContactSet(const ContactSettings& settings = {});
 
     /// Makes the rows of this substep, sorted by (device, arc length, nearest wall first), warm started from the last
-    /// ones. samples: in any order, each (device, arc_mm) once.  margin: mm, > 0.8 at the default substep (see above).
+    /// ones. samples: in any order, each (device, arc_mm) once.  margin: mm, > 1 at the default substep (see above).
     /// particles_before, particle_compliance: one a particle, positions at the beginning of the substep (mm) and c_j
     /// (mm/mN). Throws std::logic_error for samples that are not finite or have no radius.
     void detect(const LumenSurfaceModel& model, const LumenSurfaceState& surface, std::span<const DeviceSample> samples,

@@ -8,7 +8,7 @@ namespace {
 
 constexpr Index leaf_size = 4;
 constexpr std::size_t leaf_grain = 1024;
-constexpr double ball_mm = 10.0;  // places that are asked for at once
+constexpr double ball_mm = 5.0;  // places that are asked for at once
 
 Vec3 centroid(const Triangle& t, std::span<const Vec3> vertices) {
     return (vertices[static_cast<std::size_t>(t[0])] + vertices[static_cast<std::size_t>(t[1])] +
@@ -72,6 +72,7 @@ SurfaceTree build_surface_tree(std::span<const Triangle> triangles, std::span<co
                                tree.leaf_vertex.end());
     }
     tree.leaf_vertex_start.push_back(static_cast<Index>(tree.leaf_vertex.size()));
+    tree.vertex_count = vertices.size();
     return tree;
 }
 
@@ -134,14 +135,15 @@ TreePart part_near(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes
         for (const Index n : near.nodes) wanted[static_cast<std::size_t>(n)] = 1;
     }
     TreePart part;
+    std::vector<std::uint8_t> met(tree.vertex_count, 0);
     for (std::size_t l = 0; l < tree.leaves.size(); ++l) {
         if (!wanted[static_cast<std::size_t>(tree.leaves[l])]) continue;
         part.leaves.push_back(static_cast<Index>(l));
-        part.vertices.insert(part.vertices.end(), tree.leaf_vertex.begin() + tree.leaf_vertex_start[l],
-                             tree.leaf_vertex.begin() + tree.leaf_vertex_start[l + 1]);
+        for (Index k = tree.leaf_vertex_start[l]; k < tree.leaf_vertex_start[l + 1]; ++k)
+            met[static_cast<std::size_t>(tree.leaf_vertex[static_cast<std::size_t>(k)])] = 1;
     }
-    std::sort(part.vertices.begin(), part.vertices.end());
-    part.vertices.erase(std::unique(part.vertices.begin(), part.vertices.end()), part.vertices.end());
+    for (std::size_t v = 0; v < met.size(); ++v)
+        if (met[v]) part.vertices.push_back(static_cast<Index>(v));
     for (std::size_t n = tree.nodes.size(); n-- > 0;) {
         const SurfaceTree::Node& node = tree.nodes[n];
         if (node.count > 0) continue;

@@ -43,6 +43,7 @@ struct SurfaceTree {
     std::vector<Node> nodes;
     std::vector<Index> order;                           ///< triangle indices, leaf after leaf
     std::vector<Index> leaves;                          ///< nodes that are leaves, ascending
+    std::size_t vertex_count = 0;                       ///< of the whole surface
     std::vector<Index> leaf_vertex_start, leaf_vertex;  ///< vertices of leaf l, each once: [start[l], start[l + 1])
 };
 

@@ -18,7 +18,7 @@ namespace cathlab {
 /// [step]: how a step is cut up.
 struct SceneStep {
     double dt_s = 0.02;
-    int substeps = 5;
+    int substeps = 4;
     int iterations = 2;
     double contact_margin_mm = 1.5;
     double sample_spacing_mm = 1.25;

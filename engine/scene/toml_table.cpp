@@ -150,7 +150,8 @@ void read_table(const TomlNode& node, const TableSpec& spec, void* object, const
                 const std::string& section) {
     const std::string prefix = section.empty() ? "" : "[" + section + "] ";
     for (const auto& [key, value] : node.members) {
-        if (std::any_of(spec.fields.begin(), spec.fields.end(), [&](const FieldSpec& f) { return f.key == key; }))
+        if (std::any_of(spec.fields.begin(), spec.fields.end(),
+                        [&key = key](const FieldSpec& f) { return f.key == key; }))
             continue;
         std::vector<std::string> known;
         for (const FieldSpec& f : spec.fields)

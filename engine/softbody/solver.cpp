@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "core/check.h"
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::size_t particle_grain = 1024;
 constexpr std::size_t group_grain = 8;
+constexpr std::size_t piece = 128;  // particles
 constexpr std::size_t run_grain = 16;
 constexpr Index run_gap = 8;              // particles between two runs that are cheaper to take along than to go round
 constexpr double largest_guess_mm = 0.5;  // of a force's share in the start of the first fit
@@ -54,11 +56,28 @@ private:
     kernel::Groups<float> float_;
 };
 
+void fit_all(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
+    const kernel::Set& set = kernel::best();
+    scratch.transform.resize(model.group_count() * kernel::lanes * kernel::transform_doubles);
+    scratch.goal.resize(model.size());
+    const Clusters clusters(model);
+    workers.for_ranges(model.group_count(), group_grain,
+                       [&](std::size_t begin, std::size_t end) { clusters.fit(set, state, scratch, begin, end); });
+}
+
+/// Goals of particles [begin, end) from the clusters as they are fitted.
+void gather(const SoftBodyModel& model, SoftBodyScratch& scratch, const kernel::Set& set, std::size_t begin,
+            std::size_t end) {
+    set.gather(model.cluster_start.data(), model.cluster.data(), scratch.transform.data(), numbers(model.rest),
+               scratch.goal.front().data(), begin, end);
+}
+
 void apply_to(const SoftBodyModel& model, SoftBodyState& state, const SoftBodyScratch& scratch, double h,
               std::size_t begin, std::size_t end) {
+    const double per_h2 = 1.0 / h / h;
     for (std::size_t i = begin; i < end; ++i) {
         if (model.fixed[i]) continue;
-        const double inertia = model.mass[i] / (h * h);
+        const double inertia = model.mass[i] * per_h2;
         state.x[i] = scratch.compliance[i] * (inertia * scratch.predicted[i] +
                                               stiffness(model, scratch, i) * scratch.goal[i] + scratch.force[i]);
     }
@@ -74,6 +93,74 @@ void momentum_of(const SoftBodyModel& model, const SoftBodyState& state, const F
         linear += p;
         angular += (state.x[at(i)] - origin).cross(p);
     }
+}
+
+// Fixed particles stay where they are, and what is around the others stands as at rest.
+struct Standing {};
+
+template <class Target>
+void predict_with(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+                  const Target& target, std::span<const Vec3> external_force, const Workers& workers) {
+    constexpr bool standing = std::is_same_v<Target, Standing>;
+    const std::size_t n = model.size();
+    CATHLAB_CHECK(h > 0.0, "a substep must be longer than nothing");
+    CATHLAB_CHECK(external_force.empty() || external_force.size() == n, "one external force a particle");
+    CATHLAB_CHECK(scratch.stiffness_scale.empty() || scratch.stiffness_scale.size() == n,
+                  "one stiffness scale a particle");
+    scratch.momentum.resize(2 * model.free_bodies.size());
+    for (std::size_t b = 0; b < model.free_bodies.size(); ++b) {
+        const FreeBody& body = model.free_bodies[b];
+        momentum_of(model, state, body, state.x[at(body.particles.front())], scratch.momentum[2 * b],
+                    scratch.momentum[2 * b + 1]);
+    }
+    scratch.external_force.assign(external_force.begin(), external_force.end());
+    scratch.start.resize(n);
+    scratch.force.resize(n);
+    scratch.predicted.resize(n);
+    scratch.compliance.resize(n);
+    const double per_h = 1.0 / h, per_h2 = per_h / h;
+    workers.for_ranges(n, particle_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3 x = state.x[i];
+            scratch.start[i] = x;
+            scratch.force[i].setZero();
+            Vec3 stand = model.rest[i];
+            if constexpr (!standing) stand = target(i);
+            if (model.fixed[i]) {
+                scratch.predicted[i] = standing ? x : stand;
+                state.x[i] = scratch.predicted[i];
+                scratch.compliance[i] = 0.0;
+                continue;
+            }
+            const double inertia = model.mass[i] * per_h2;
+            const double share = 1.0 / inertia;
+            Vec3 coasted = x + h * state.v[i];
+            Vec3 predicted = coasted;
+            if (!external_force.empty()) {
+                const Vec3 pull = external_force[i] / inertia;
+                const double length = pull.norm();
+                predicted += pull;
+                // Only a free body has to fall with its forces from the start: a held one would start its fit
+                // displaced, and a few passes never take that back.
+                if (!model.free_bodies.empty())
+                    coasted += length > largest_guess_mm ? Vec3(pull * (largest_guess_mm / length)) : pull;
+            }
+            // The foundation's springs and dashpots are as implicit as the goals; they go into the right-hand side with
+            // x~.
+            double around = 0.0;
+            if (!model.support.empty()) {
+                around += model.support[i];
+                predicted += model.support[i] * share * stand;
+            }
+            if (!model.drag.empty()) {
+                around += model.drag[i] * per_h;
+                predicted += model.drag[i] * per_h * share * x;
+            }
+            scratch.predicted[i] = predicted;
+            state.x[i] = coasted;
+            scratch.compliance[i] = 1.0 / (inertia + around + stiffness(model, scratch, i));
+        }
+    });
 }
 
 /// Adds the rigid velocity field that brings the body's momentum to the wanted one.
@@ -125,72 +212,46 @@ SoftBodyState rest_state(const SoftBodyModel& model) {
 
 void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
              std::span<const Vec3> fixed_target, std::span<const Vec3> external_force, const Workers& workers) {
-    const std::size_t n = model.size();
-    CATHLAB_CHECK(h > 0.0, "a substep must be longer than nothing");
-    CATHLAB_CHECK(fixed_target.empty() || fixed_target.size() == n, "one target a particle");
-    CATHLAB_CHECK(external_force.empty() || external_force.size() == n, "one external force a particle");
-    CATHLAB_CHECK(scratch.stiffness_scale.empty() || scratch.stiffness_scale.size() == n,
-                  "one stiffness scale a particle");
-    scratch.momentum.resize(2 * model.free_bodies.size());
-    for (std::size_t b = 0; b < model.free_bodies.size(); ++b) {
-        const FreeBody& body = model.free_bodies[b];
-        momentum_of(model, state, body, state.x[at(body.particles.front())], scratch.momentum[2 * b],
-                    scratch.momentum[2 * b + 1]);
-    }
-    scratch.start = state.x;
-    scratch.external_force.assign(external_force.begin(), external_force.end());
-    scratch.force.assign(n, Vec3::Zero());
-    scratch.predicted.resize(n);
-    scratch.compliance.resize(n);
-    workers.for_ranges(n, particle_grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (model.fixed[i]) {
-                scratch.predicted[i] = fixed_target.empty() ? state.x[i] : fixed_target[i];
-                state.x[i] = scratch.predicted[i];
-                scratch.compliance[i] = 0.0;
-                continue;
-            }
-            const double inertia = model.mass[i] / (h * h);
-            Vec3 coasted = state.x[i] + h * state.v[i];
-            scratch.predicted[i] = coasted;
-            if (!external_force.empty()) {
-                const Vec3 pull = external_force[i] / inertia;
-                const double length = pull.norm();
-                scratch.predicted[i] += pull;
-                // Only a free body has to fall with its forces from the start: a held one would start its fit
-                // displaced, and a few passes never take that back.
-                if (!model.free_bodies.empty())
-                    coasted += length > largest_guess_mm ? Vec3(pull * (largest_guess_mm / length)) : pull;
-            }
-            // The foundation's springs and dashpots are as implicit as the goals; they go into the right-hand side with
-            // x~.
-            double around = 0.0;
-            if (!model.support.empty()) {
-                around += model.support[i];
-                const Vec3& stand = fixed_target.empty() ? model.rest[i] : fixed_target[i];
-                scratch.predicted[i] += model.support[i] / inertia * stand;
-            }
-            if (!model.drag.empty()) {
-                around += model.drag[i] / h;
-                scratch.predicted[i] += model.drag[i] / h / inertia * state.x[i];
-            }
-            state.x[i] = coasted;
-            scratch.compliance[i] = 1.0 / (inertia + around + stiffness(model, scratch, i));
-        }
-    });
+    CATHLAB_CHECK(fixed_target.empty() || fixed_target.size() == model.size(), "one target a particle");
+    if (fixed_target.empty())
+        predict_with(model, state, scratch, h, Standing{}, external_force, workers);
+    else
+        predict_with(
+            model, state, scratch, h, [&](std::size_t i) { return fixed_target[i]; }, external_force, workers);
+}
+
+void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+             const SupportMotion& supports, std::span<const Vec3> external_force, const Workers& workers) {
+    CATHLAB_CHECK(supports.before.size() == model.size() && supports.after.size() == model.size(),
+                  "one displacement a particle");
+    predict_with(
+        model, state, scratch, h,
+        [&](std::size_t i) {
+            return Vec3(model.rest[i] + (1.0 - supports.share) * supports.before[i] +
+                        supports.share * supports.after[i]);
+        },
+        external_force, workers);
 }
 
 void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
+    fit_all(model, state, scratch, workers);
     const kernel::Set& set = kernel::best();
-    const std::size_t groups = model.group_count();
-    scratch.transform.resize(groups * kernel::lanes * kernel::transform_doubles);
-    scratch.goal.resize(model.size());
-    const Clusters clusters(model);
-    workers.for_ranges(groups, group_grain,
-                       [&](std::size_t begin, std::size_t end) { clusters.fit(set, state, scratch, begin, end); });
+    workers.for_ranges(model.size(), particle_grain,
+                       [&](std::size_t begin, std::size_t end) { gather(model, scratch, set, begin, end); });
+}
+
+void solve_and_apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+                     const Workers& workers) {
+    CATHLAB_CHECK(scratch.force.size() == model.size(), "predict comes before");
+    fit_all(model, state, scratch, workers);
+    const kernel::Set& set = kernel::best();
     workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
-        set.gather(model.cluster_start.data(), model.cluster.data(), scratch.transform.data(), numbers(model.rest),
-                   scratch.goal.front().data(), begin, end);
+        // Piece by piece, so that the goals are still at hand when they are applied.
+        for (std::size_t first = begin; first < end; first += piece) {
+            const std::size_t last = std::min(first + piece, end);
+            gather(model, scratch, set, first, last);
+            apply_to(model, state, scratch, h, first, last);
+        }
     });
 }
 
@@ -238,8 +299,7 @@ void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScrat
     });
     workers.for_ranges(part.runs.size(), run_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k)
-            set.gather(model.cluster_start.data(), model.cluster.data(), scratch.transform.data(), numbers(model.rest),
-                       scratch.goal.front().data(), at(part.runs[k].first), at(part.runs[k].second));
+            gather(model, scratch, set, at(part.runs[k].first), at(part.runs[k].second));
     });
 }
 
@@ -262,9 +322,9 @@ void finish(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& s
             state.v[i] = (state.x[i] - scratch.start[i]) / h;
             if (!has_goals) continue;
             if (!model.fixed[i]) state.v[i] += towards * ((scratch.goal[i] - state.goal[i]) / h - state.v[i]);
-            state.goal[i] = scratch.goal[i];
         }
     });
+    if (has_goals) state.goal.swap(scratch.goal);  // the next fit writes all of them anew
     for (std::size_t b = 0; b < model.free_bodies.size(); ++b) {
         const FreeBody& body = model.free_bodies[b];
         const Vec3 origin = scratch.start[at(body.particles.front())];

@@ -49,12 +49,27 @@ SoftBodyState rest_state(const SoftBodyModel& model);
 void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
              std::span<const Vec3> fixed_target, std::span<const Vec3> external_force, const Workers& workers);
 
+/// Where supports stand: rest + displacement, on the way from `before` to `after` (n each, mm), share 0 to 1.
+struct SupportMotion {
+    std::span<const Vec3> before, after;
+    double share = 1.0;
+
+    explicit SupportMotion(std::span<const Vec3> from, std::span<const Vec3> to, double part)
+        : before(from), after(to), share(part) {}
+};
+void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+             const SupportMotion& supports, std::span<const Vec3> external_force, const Workers& workers);
+
 /// Fits every cluster to state.x (weights m_i / n_i) and writes scratch.goal.
 void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers);
 
 /// state.x from x~, goals and scratch.force.
 void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
            const Workers& workers);
+
+/// solve_goals and apply in one walk over the particles.
+void solve_and_apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+                     const Workers& workers);
 
 /// A part of the wall: the groups of clusters that hold any of some particles, and all particles of those groups, as
 /// runs [first, second) that may take in a few neighbours.  Passes after the first need only look here: where nothing

@@ -21,6 +21,10 @@ constexpr double head_on_mn = 10.0;
 constexpr double head_on_advance_mm = 0.06;
 // Rows at most for a sample of the front end, round which the wall folds like a tent.
 constexpr int walls_of_a_tip = 4;
+// Front of the wire, and of the catheter's shaft behind its segments, that is sampled at the full density; behind it
+// the shafts are stiff and lie smoothly, and one sample of two tells where they touch.
+constexpr double fine_front_mm = 60.0;
+constexpr int shaft_thinning = 2;
 
 // Material arc length from the wire's tip of the centre of every link.
 std::vector<double> link_centres(const Rod& wire) {
@@ -59,9 +63,18 @@ std::vector<RailLead> led_by_wire(const Parts& p) {
     return leads;
 }
 
+// How far beyond its steerable part the catheter's way on is looked at, for where the vessels end.
+constexpr double beyond_route_mm = 60.0;
+
 Rail current_rail(const Parts& p) {
-    const CatheterRoute& route = *p.catheter_route;
-    Rail rail = build_rail(route.graph, route.path, p.catheter_state->route, p.mount->mouth);
+    CatheterRoute& route = *p.catheter_route;
+    if (route.rail_route != p.catheter_state->route) {
+        route.rail_route = p.catheter_state->route;
+        route.rail = build_rail(route.graph, route.path, route.rail_route, p.mount->mouth);
+        route.insertion_limit_mm = insertion_limit(route.graph, route.path, route.rail_route,
+                                                   p.catheter->steerable_length_mm() + beyond_route_mm);
+    }
+    Rail rail = route.rail;
     if (p.mount->follow_wire && p.wire) {
         const std::vector<Vec3> line = p.wire->polyline();
         std::vector<Vec3> nodes{p.mount->mouth.position};
@@ -193,8 +206,7 @@ double move_catheter(Parts& p, const Input& input, double h) {
     command.bend_rad.resize(p.catheter->segments.size(), 0.0);
     command.direction_rad.resize(p.catheter->segments.size(), 0.0);
 
-    const double steerable = p.catheter->steerable_length_mm();
-    const double limit = insertion_limit(route.graph, route.path, state.route, steerable + 60.0);
+    const double limit = route.insertion_limit_mm;
     WallAround around = wall_around(p, start);
     std::vector<WallLimit>& limits = around.limits;
     bool held = p.wire && wire_presses(*p.wire_drive, *p.settings) && hold_back(command, state);
@@ -234,7 +246,8 @@ void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceS
     samples.list.clear();
     if (p.wire) {
         const Rod& wire = *p.wire;
-        wire.samples(p.settings->sample_spacing_mm, samples.wire);
+        wire.samples(p.settings->sample_spacing_mm, fine_front_mm, shaft_thinning * p.settings->sample_spacing_mm,
+                     samples.wire);
         const std::vector<double> centre = link_centres(wire);
         for (std::size_t i = 0; i < wire.link_count(); ++i)
             samples.link_before.push_back(wire.link_pose(i).orientation);
@@ -265,6 +278,7 @@ void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceS
             const std::size_t i = now.points.size() - 1 - k;        // from the tip
             if (now.arc[i] < p.catheter->outer_diameter_mm) break;  // the sheath's mouth holds what is beside it
             const double from_tip = now.arc.back() - now.arc[i];
+            if (k % shaft_thinning != 0 && from_tip > p.catheter->steerable_length_mm() + fine_front_mm) continue;
             DeviceSample d;
             d.position = now.points[i];
             d.previous = point_at(catheter_before, catheter_before.arc.back() - from_tip);

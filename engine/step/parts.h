@@ -81,6 +81,10 @@ struct CatheterRoute {
     /// away with it.
     std::vector<Vec3> path;
     CatheterShape shape;  ///< where it lies now; follows from state and wall
+    /// What follows from the route alone, kept while that stays the same.
+    std::vector<std::int64_t> rail_route;
+    Rail rail;
+    double insertion_limit_mm = 0.0;
 };
 
 /// Component of the heart: forces between cylinder and wall, kept from substep to substep as a warm start.

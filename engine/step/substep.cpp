@@ -29,7 +29,7 @@ constexpr double pressed_mn = 100.0;
 constexpr double pressed_depth_mm = 0.25;
 constexpr int extra_passes = 3;
 // Within a step the lumen surface follows the wall up to this far from the devices.
-constexpr double surface_reach_mm = 6.0;
+constexpr double surface_reach_mm = 4.5;
 
 void command_wire(Parts& p, const Input& input, double h, StepSums& sums) {
     const bool selected = input.device < 0.5;
@@ -158,10 +158,7 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
     p.stage("effects");
     WallForces extra(p, context);
     p.stage("softbody");
-    std::vector<Vec3> target(wall.size());
-    for (std::size_t i = 0; i < target.size(); ++i)
-        target[i] = wall.rest[i] + (1.0 - s1) * support_before[i] + s1 * support_after[i];
-    predict(wall, state, scratch, h, target, extra.external(), workers);
+    predict(wall, state, scratch, h, SupportMotion(support_before, support_after, s1), extra.external(), workers);
 
     // 2. Contacts, against the wall where it was when the substep began: the prediction is inertia alone, and a wall
     // that leans on a device would be looked for where the device is not.
@@ -180,9 +177,8 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
     for (int pass = 0; pass < passes; ++pass) {
         p.stage("softbody");
         if (pass == 0) {
-            solve_goals(wall, state, scratch, workers);
             extra.gather(p);
-            apply(wall, state, scratch, h, workers);
+            solve_and_apply(wall, state, scratch, h, workers);
         } else {
             solve_goals(wall, state, scratch, touched, workers);
             extra.gather(p);

@@ -72,16 +72,19 @@ void WallForces::add_touched(std::vector<Index>& particles) const {
     for (const WallAnchor& anchor : anchors_) particles.push_back(anchor.particle);
 }
 
-void WallForces::gather(const Parts& p) const {
+void WallForces::gather(const Parts& p) {
     std::vector<Vec3>& force = p.wall_scratch->force;
-    std::fill(force.begin(), force.end(), Vec3::Zero());
+    const auto add = [&](Index particle, const Vec3& f) {
+        written_.push_back(particle);
+        force[static_cast<std::size_t>(particle)] += f;
+    };
+    for (const Index i : written_) force[static_cast<std::size_t>(i)].setZero();
+    const auto touched = p.contacts->particles();
+    written_.assign(touched.begin(), touched.end());
     p.contacts->apply_to_wall(force);
-    for (const CylinderRow& row : rows_) {
-        const auto i = static_cast<std::size_t>(row.particle);
-        force[i] += p.heart_contact->force_mn[i] * row.normal;
-    }
-    for (std::size_t k = 0; k < anchors_.size(); ++k)
-        force[static_cast<std::size_t>(anchors_[k].particle)] += anchor_force_[k];
+    for (const CylinderRow& row : rows_)
+        add(row.particle, p.heart_contact->force_mn[static_cast<std::size_t>(row.particle)] * row.normal);
+    for (std::size_t k = 0; k < anchors_.size(); ++k) add(anchors_[k].particle, anchor_force_[k]);
 }
 
 }  // namespace cathlab

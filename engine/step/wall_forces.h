@@ -31,13 +31,14 @@ public:
     void add_touched(std::vector<Index>& particles) const;
 
     /// Scratch force = devices + heart + anchors, mN.
-    void gather(const Parts& parts) const;
+    void gather(const Parts& parts);
 
 private:
     std::vector<Vec3> external_;
     std::vector<WallAnchor> anchors_;
     std::vector<Vec3> anchor_force_;  ///< one an anchor, mN
     std::vector<CylinderRow> rows_;
+    std::vector<Index> written_;  ///< particles that the last gather gave a force; the others have none
 };
 
 }  // namespace cathlab

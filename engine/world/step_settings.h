@@ -13,7 +13,7 @@ namespace cathlab {
 /// Component of the entity "world"; const after load.
 struct StepSettings {
     double dt = 0.02;                        ///< s
-    int substeps = 5;                        ///< h = dt / substeps
+    int substeps = 4;                        ///< h = dt / substeps
     int iterations = 2;                      ///< passes over clusters, chain and rows in a substep
     double contact_margin_mm = 1.5;          ///< rows are made for samples nearer to the wall than this
     double sample_spacing_mm = 1.25;         ///< of contact samples along the guidewire
