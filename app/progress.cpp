@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -21,7 +22,7 @@ bool stderr_is_terminal() {
 }  // namespace
 
 std::string duration_text(double seconds) {
-    const auto s = static_cast<long>(std::max(0.0, seconds) + 0.5);
+    const auto s = std::lround(std::max(0.0, seconds));
     if (s < 60) return std::to_string(s) + " s";
     if (s < 3600) return std::to_string(s / 60) + " min " + std::to_string(s % 60) + " s";
     return std::to_string(s / 3600) + " h " + std::to_string(s % 3600 / 60) + " min";

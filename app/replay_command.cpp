@@ -24,7 +24,7 @@ struct ReplayOptions {
 SceneSpec recorded_scene(const RunRecord& run, const AppContext& context) {
     std::vector<std::string> overlays;
     for (const std::string& overlay : run.manifest.overlays) overlays.push_back(find_scene(overlay, context.data_root));
-    const SceneSpec scene = load_scene(find_scene(run.manifest.scene, context.data_root), overlays, context.data_root);
+    SceneSpec scene = load_scene(find_scene(run.manifest.scene, context.data_root), overlays, context.data_root);
     if (scene.hash != run.manifest.scene_hash)
         throw UserError(run.folder + ": the scene " + scene.path +
                         ", its overlays or the files that it names have changed since this run was recorded");

@@ -331,6 +331,14 @@ double ContactSet::staleness() const {
     return std::sqrt(worst);
 }
 
+std::vector<double> ContactSet::arcs_at_the_wall(Index device) const {
+    std::vector<double> arcs;
+    for (std::size_t i = 0; i < memory_.device.size(); ++i)
+        if (memory_.device[i] == device && memory_.first_row[i + 1] > memory_.first_row[i])
+            arcs.push_back(memory_.arc[i]);
+    return arcs;
+}
+
 double ContactSet::true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
                               std::span<const DeviceSample> samples_now, double force_mn) const {
     double depth = 0.0;

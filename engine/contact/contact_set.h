@@ -133,6 +133,8 @@ public:
     std::span<const WallRow> wall_rows() const { return wall_; }
     std::span<const Index> particles() const { return particle_; }
     std::span<const double> weights() const { return weight_; }
+    /// Arc lengths, ascending, of the samples of a device that had a row at the last detect.
+    std::vector<double> arcs_at_the_wall(Index device) const;
     /// Triangle last seen by sample s of detect, -1 = none.
     Index hint(std::size_t sample) const { return memory_.triangle[sample]; }
     const ContactSettings& settings() const { return settings_; }

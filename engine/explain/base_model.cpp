@@ -42,13 +42,13 @@ BaseModel::BaseModel(const Dataset& data, const Split& split)
         const bool beating =
             !beats.empty() && std::all_of(beats.begin(), beats.end(), [](const auto& b) { return b.size() >= 2; });
         const auto train = static_cast<double>(std::count(held_out_.begin(), held_out_.end(), 0));
-        const int harmonics =
+        const Eigen::Index harmonics =
             beating ? std::clamp(static_cast<int>((train / rows_a_number - static_cast<double>(runs)) / 2.0), 1,
                                  most_harmonics)
                     : 0;
         basis_ = Matrix::Zero(rows, runs + 2 * harmonics);
         for (const std::string& run : data.run_names) names_.push_back("rest_" + run);
-        for (int k = 1; k <= harmonics; ++k) {
+        for (Eigen::Index k = 1; k <= harmonics; ++k) {
             names_.push_back("beat_cos_" + std::to_string(k));
             names_.push_back("beat_sin_" + std::to_string(k));
         }
@@ -56,8 +56,9 @@ BaseModel::BaseModel(const Dataset& data, const Split& split)
             const auto row = static_cast<std::size_t>(i);
             const auto run = static_cast<std::size_t>(data.run[row]);
             basis_(i, data.run[row]) = 1.0;
-            for (int k = 1; k <= harmonics; ++k) {
-                const double angle = 2.0 * units::pi * k * continued_phase(beats[run], data.time_s[row]);
+            for (Eigen::Index k = 1; k <= harmonics; ++k) {
+                const double angle =
+                    2.0 * units::pi * static_cast<double>(k) * continued_phase(beats[run], data.time_s[row]);
                 basis_(i, runs + 2 * (k - 1)) = std::cos(angle);
                 basis_(i, runs + 2 * (k - 1) + 1) = std::sin(angle);
             }

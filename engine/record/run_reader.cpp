@@ -1,9 +1,10 @@
 #include "record/run_reader.h"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 
@@ -187,7 +188,7 @@ const ChannelInfo* first_difference(const Channels& recorded, const Channels& no
         const double a = recorded.*channel.value;
         const double b = now.*channel.value;
         if (std::isnan(a) && std::isnan(b)) continue;  // a table has one NaN only
-        if (std::memcmp(&a, &b, sizeof(double)) != 0) return &channel;
+        if (std::bit_cast<std::uint64_t>(a) != std::bit_cast<std::uint64_t>(b)) return &channel;
     }
     return nullptr;
 }

@@ -217,19 +217,14 @@ const SheathPose& Rod::sheath() const {
 }
 
 void Rod::samples(double spacing_mm, std::vector<RodSample>& out) const {
-    samples(spacing_mm, 0.0, spacing_mm, out);
-}
-
-void Rod::samples(double front_spacing_mm, double front_mm, double spacing_mm, std::vector<RodSample>& out) const {
-    CATHLAB_CHECK(front_spacing_mm > 0.0 && spacing_mm > 0.0, "the spacing of samples must be positive");
+    CATHLAB_CHECK(spacing_mm > 0.0, "the spacing of samples must be positive");
     const Impl& m = *impl_;
     out.clear();
     for (std::size_t i = 0; i < m.free_count(); ++i) {
         const WireLink& link = m.links[i];
         const Vec3 axis = m.q[i] * Vec3::UnitZ();
-        const double spacing = link.start < front_mm ? front_spacing_mm : spacing_mm;
-        const double pieces = std::max(1.0, std::ceil(link.length / spacing - 1e-9));
-        for (double k = i == 0 ? 0.0 : 1.0; k <= pieces; k += 1.0) {
+        const double pieces = std::max(1.0, std::ceil(link.length / spacing_mm - 1e-9));
+        for (int k = i == 0 ? 0 : 1; k <= pieces; ++k) {
             const double s = link.length * k / pieces;
             if (link.start + s > m.insertion) break;
             const Vec3 arm = axis * (0.5 * link.length - s);

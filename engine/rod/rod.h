@@ -96,8 +96,6 @@ public:
 
     /// Points at most spacing_mm apart along the part of the wire that is beyond the mouth, tip first, each joint once.
     void samples(double spacing_mm, std::vector<RodSample>& out) const;
-    /// The same with a spacing of its own for the links that begin within `front_mm` of the tip.
-    void samples(double front_spacing_mm, double front_mm, double spacing_mm, std::vector<RodSample>& out) const;
 
     const WireSpec& spec() const;
     const SheathPose& sheath() const;

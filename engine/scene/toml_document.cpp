@@ -168,15 +168,15 @@ TomlNode load_toml(const std::string& path) {
 }
 
 void merge_toml(TomlNode& base, TomlNode overlay) {
-    for (auto& [key, value] : overlay.members) {
-        const auto at = std::lower_bound(base.members.begin(), base.members.end(), key,
-                                         [](const auto& member, const std::string& k) { return member.key < k; });
-        if (at == base.members.end() || at->key != key)
-            base.members.insert(at, {key, std::move(value)});
-        else if (at->node.kind == TomlKind::table && value.kind == TomlKind::table)
-            merge_toml(at->node, std::move(value));
+    for (TomlMember& member : overlay.members) {
+        const auto at = std::lower_bound(base.members.begin(), base.members.end(), member.key,
+                                         [](const TomlMember& m, const std::string& key) { return m.key < key; });
+        if (at == base.members.end() || at->key != member.key)
+            base.members.insert(at, std::move(member));
+        else if (at->node.kind == TomlKind::table && member.node.kind == TomlKind::table)
+            merge_toml(at->node, std::move(member.node));
         else
-            at->node = std::move(value);
+            at->node = std::move(member.node);
     }
 }
 

@@ -21,10 +21,23 @@ constexpr double head_on_mn = 10.0;
 constexpr double head_on_advance_mm = 0.06;
 // Rows at most for a sample of the front end, round which the wall folds like a tent.
 constexpr int walls_of_a_tip = 4;
-// Front of the wire, and of the catheter's shaft behind its segments, that is sampled at the full density; behind it
-// the shafts are stiff and lie smoothly, and one sample of two tells where they touch.
-constexpr double fine_front_mm = 60.0;
-constexpr int shaft_thinning = 2;
+// The front of the wire, and of the catheter's shaft behind its segments, is sampled in full; behind it every other
+// sample is left out where none of its neighbours within so much came near the wall in the last substep.
+constexpr double full_front_mm = 60.0;
+constexpr double neighbours_mm = 3.0;
+
+// Where along a device the last substep found the wall near.
+class AtTheWall {
+public:
+    AtTheWall(const ContactSet& contacts, Index device) : arcs_(contacts.arcs_at_the_wall(device)) {}
+    bool near(double arc) const {
+        const auto it = std::lower_bound(arcs_.begin(), arcs_.end(), arc - neighbours_mm);
+        return it != arcs_.end() && *it <= arc + neighbours_mm;
+    }
+
+private:
+    std::vector<double> arcs_;
+};
 
 // Material arc length from the wire's tip of the centre of every link.
 std::vector<double> link_centres(const Rod& wire) {
@@ -246,18 +259,19 @@ void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceS
     samples.list.clear();
     if (p.wire) {
         const Rod& wire = *p.wire;
-        wire.samples(p.settings->sample_spacing_mm, fine_front_mm, shaft_thinning * p.settings->sample_spacing_mm,
-                     samples.wire);
+        wire.samples(p.settings->sample_spacing_mm, samples.wire);
         const std::vector<double> centre = link_centres(wire);
         for (std::size_t i = 0; i < wire.link_count(); ++i)
             samples.link_before.push_back(wire.link_pose(i).orientation);
         const CatheterBore bore = catheter_bore(p);
+        const AtTheWall at_wall(*p.contacts, wire_device);
         for (std::size_t i = 0; i < samples.wire.size(); ++i) {
             const RodSample& s = samples.wire[i];
             const auto link = static_cast<std::size_t>(s.link);
             const double arc = centre[link] - s.arm.dot(samples.link_before[link] * Vec3::UnitZ());
             samples.wire_arc.push_back(arc);
             if (inside_bore(bore, wire.insertion_mm() - arc)) continue;
+            if (i % 2 != 0 && arc > full_front_mm && !at_wall.near(arc)) continue;
             samples.wire_free.push_back(i);
             DeviceSample d;
             d.position = s.position;
@@ -274,11 +288,13 @@ void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceS
     }
     if (p.catheter) {
         const CatheterShape& now = p.catheter_route->shape;
+        const AtTheWall at_wall(*p.contacts, catheter_device);
         for (std::size_t k = 0; k < now.points.size(); ++k) {
             const std::size_t i = now.points.size() - 1 - k;        // from the tip
             if (now.arc[i] < p.catheter->outer_diameter_mm) break;  // the sheath's mouth holds what is beside it
             const double from_tip = now.arc.back() - now.arc[i];
-            if (k % shaft_thinning != 0 && from_tip > p.catheter->steerable_length_mm() + fine_front_mm) continue;
+            if (k % 2 != 0 && from_tip > p.catheter->steerable_length_mm() + full_front_mm && !at_wall.near(from_tip))
+                continue;
             DeviceSample d;
             d.position = now.points[i];
             d.previous = point_at(catheter_before, catheter_before.arc.back() - from_tip);

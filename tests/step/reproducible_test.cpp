@@ -19,7 +19,7 @@ struct ExpectedHash {
 constexpr std::array<ExpectedHash, 3> expected_hashes{{
     {"tube_wire", 0x63a600188d20dfb6},
     {"tube_catheter", 0x98c3b239c4a437dd},
-    {"fork", 0x55ab5493b729c099},
+    {"fork", 0x25c129464fa7eba5},
 }};
 
 constexpr int steps = 150;
