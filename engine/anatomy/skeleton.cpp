@@ -246,6 +246,7 @@ void close_loops(const Lattice& lattice, Growing& skeleton) {
             });
         }
         std::vector<std::pair<Contact, std::pair<Index, Index>>> sorted;
+        sorted.reserve(contacts.size());
         for (const auto& [key, contact] : contacts) sorted.emplace_back(contact, key);
         std::stable_sort(sorted.begin(), sorted.end(),
                          [](const auto& a, const auto& b) { return a.first.depth > b.first.depth; });
