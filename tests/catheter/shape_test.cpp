@@ -123,3 +123,48 @@ TEST(CatheterSpec, NumbersOutOfRangeAreNamed) {
     spec.segments.clear();
     EXPECT_THROW(validate(spec), UserError);
 }
+
+namespace {
+
+Rail round_rail(double radius) {
+    std::vector<Vec3> nodes;
+    for (double s = 0.0; s <= 300.0; s += 1.0)
+        nodes.emplace_back(radius - radius * std::cos(s / radius), 0.0, radius * std::sin(s / radius));
+    return build_rail(Pose{}, nodes, {});
+}
+
+// Angle between base and tip, radians.
+double turned(const CatheterShape& s) {
+    const Vec3 from = s.base.orientation * Vec3::UnitZ(), to = s.tip.orientation * Vec3::UnitZ();
+    return std::atan2(from.cross(to).norm(), from.dot(to));
+}
+
+}  // namespace
+
+TEST(CatheterShape, AWireInsideAndTheBendsShareTheCurvatureByTheirStiffnesses) {
+    const CatheterSpec spec;
+    const double radius = 100.0, steerable = spec.steerable_length_mm();
+    Rail rail = round_rail(radius);
+    const CatheterState straight = initial_state(spec, 200.0);
+    EXPECT_NEAR(turned(shape(spec, straight, rail)), 0.0, 1e-9);  // no wire: straight on
+    for (const double share : {0.25, 0.9, 1.0}) {
+        rail.leads = {{0.0, 300.0, share}};
+        EXPECT_NEAR(turned(shape(spec, straight, rail)), share * steerable / radius, 0.01 * steerable / radius);
+        // Bent against the rail: what is left of its own bend comes off.
+        const CatheterState back = bent(spec, 200.0, 10.0, 20.0, units::pi);
+        const double own = 30.0 * units::deg;
+        EXPECT_NEAR(turned(shape(spec, back, rail)), std::fabs(share * steerable / radius - (1.0 - share) * own), 0.01);
+    }
+    // A rail that leads it wholly carries the tip along its own curve.
+    const CatheterShape led = shape(spec, straight, rail);
+    EXPECT_LT((led.tip.position - rail.point(200.0)).norm(), 0.05);
+}
+
+TEST(CatheterShape, AWireThatReachesHalfWayLeadsThatHalf) {
+    const CatheterSpec spec;
+    const double radius = 100.0, steerable = spec.steerable_length_mm(), base = 200.0 - steerable;
+    Rail rail = round_rail(radius);
+    rail.leads = {{0.0, base + 0.5 * steerable, 1.0}};
+    EXPECT_NEAR(turned(shape(spec, initial_state(spec, 200.0), rail)), 0.5 * steerable / radius,
+                0.01 * steerable / radius);
+}
