@@ -28,6 +28,13 @@ void hand_over(char&) {}
 void take_over(char&) {}
 #endif
 
+/// Does so at the end of its block, an exception's too.
+struct AtEnd {
+    void (*what)(char&);
+    char& at;
+    ~AtEnd() { what(at); }
+};
+
 }  // namespace
 
 struct Workers::Pool {
@@ -51,18 +58,18 @@ void Workers::for_ranges(std::size_t count, std::size_t grain,
     // isolate: a worker that waits here must not pick up another world's outer task, which could deadlock on locks
     // above us.
     char begun = 0, ended = 0;
+    const AtEnd after_all{take_over, ended};
     hand_over(begun);
     pool_->arena.execute([&] {
         tbb::this_task_arena::isolate([&] {
             tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, std::max<std::size_t>(1, grain)),
                               [&](const tbb::blocked_range<std::size_t>& r) {
                                   take_over(begun);
+                                  const AtEnd after{hand_over, ended};
                                   body(r.begin(), r.end());
-                                  hand_over(ended);
                               });
         });
     });
-    take_over(ended);
 }
 
 }  // namespace cathlab
