@@ -226,7 +226,9 @@ TEST(Solver, APartOfTheWallIsSolvedAsTheWholeWouldBe) {
         ASSERT_NE(wall.state.x[k], before[k]);
     }
     for (std::size_t i = 0; i < inside.size(); ++i)
-        if (!inside[i]) ASSERT_EQ(wall.state.x[i], before[i]);
+        if (!inside[i]) {
+            ASSERT_EQ(wall.state.x[i], before[i]);
+        }
 }
 
 TEST(Solver, APartAroundNothingIsEmpty) {
