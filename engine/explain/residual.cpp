@@ -102,8 +102,8 @@ SpectrumPeak highest_peak(std::span<const double> time_s, std::span<const double
     const double step_hz = std::max(0.25 / longest, (1.0 / shortest - 1.0 / longest) / 20000.0);
     SpectrumPeak best;
     double independent = 0.0;
-    const int steps = static_cast<int>((1.0 / shortest - 1.0 / longest) / step_hz);
-    for (int k = 0; k <= steps; ++k) {
+    const int last = static_cast<int>((1.0 / shortest - 1.0 / longest) / step_hz);
+    for (int k = 0; k <= last; ++k) {
         const double f = 1.0 / longest + k * step_hz;
         const double w = 2.0 * units::pi * f;
         double s2 = 0.0, c2 = 0.0;
