@@ -9,10 +9,11 @@
 //
 // A row holds sample point p, wall point q = sum w_j x_j, normal n into the lumen:
 //     gap = n . (p - q) - offset          mm, offset so that it is signed distance - radius at detection
-//     C   = max(sum w_j^2 c_j N_j, min_compliance)                   mm/mN, N_j = rows that touch particle j
+//     C   = max(sum w_j^2 c_j N_j, min_compliance)                   mm/mN, N_j = see below
 //     lambda' = max(0, lambda - gap / C),  |t| <= friction * lambda' mN
 // The device gets lambda n + t, particle j gets -w_j (lambda n + t): the weights sum to one and sum w_j x_j = q, so
-// force and moment about any point are handed over in full.  N_j keeps a solve that averages over rows from
+// force and moment about any point are handed over in full.  N_j, the rows of dynamic
+// samples on particle j that carry a force or are closed within 0.1 mm (1 at least), keeps a solve that averages from
 // overshooting; it changes how fast the answer is reached and not the answer, which is gap = 0 or lambda = 0.
 //
 // n is the normal of the smooth wall that the facets stand for (interpolated between corners) where that lies within 60
