@@ -8,11 +8,14 @@
 #include <mutex>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
+#include <optional>
 #include <thread>
+#include <vector>
 
 #include "core/check.h"
 #include "core/errors.h"
 #include "core/log.h"
+#include "imaging/libav_encoder.h"
 
 namespace cathlab {
 
@@ -52,30 +55,32 @@ struct VideoWriter::Impl {
     int width = 0, height = 0;
     std::size_t added = 0;
     bool closed = false;
-    cv::VideoWriter writer;
+    std::optional<LibavEncoder> writer;  // the encoder's thread uses it while that runs
 
     std::thread encoder;
     std::mutex mutex;
     std::condition_variable changed;
-    std::deque<cv::Mat> queue;
+    std::deque<Image8> queue;
+    std::vector<Image8> spent;  // encoded pictures, whose memory the next ones take
     bool ending = false;
     std::string failure;  // what stopped the encoder
 
-    bool open(const char* fourcc, double fps) {
-        codec = fourcc;
-        const int code = cv::VideoWriter::fourcc(fourcc[0], fourcc[1], fourcc[2], fourcc[3]);
+    void open(FilmCodec wanted, const char* name, double fps) {
+        codec = name;
         try {
-            return writer.open(part, cv::CAP_FFMPEG, code, fps, cv::Size(width, height), true);
-        } catch (const cv::Exception&) {
-            return false;
+            writer.emplace(part, wanted, width, height, fps);
+        } catch (const std::runtime_error& error) {
+            drop_part();
+            throw UserError("cannot write video '" + path + "': " + error.what());
         }
     }
 
     void encode() {
+        Image8 frame;
         for (;;) {
-            cv::Mat frame;
             {
                 std::unique_lock lock(mutex);
+                if (!frame.rgb.empty()) spent.push_back(std::move(frame));
                 changed.wait(lock, [&] { return ending || !queue.empty(); });
                 if (queue.empty()) return;
                 frame = std::move(queue.front());
@@ -83,7 +88,7 @@ struct VideoWriter::Impl {
             }
             changed.notify_all();
             try {
-                writer.write(frame);
+                writer->write(frame);
             } catch (const std::exception& error) {
                 const std::scoped_lock lock(mutex);
                 failure = error.what();
@@ -101,7 +106,16 @@ struct VideoWriter::Impl {
         }
         changed.notify_all();
         if (encoder.joinable()) encoder.join();
-        writer.release();
+    }
+
+    // After the encoder's thread has ended.
+    void finish() {
+        try {
+            if (failure.empty() && added > 0) writer->finish();
+        } catch (const std::exception& error) {
+            failure = error.what();
+        }
+        writer.reset();
     }
 
     void drop_part() const {
@@ -128,14 +142,13 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, double 
     impl_->width = width;
     impl_->height = height;
     require_writable(path, impl_->part);
-    bool open = impl_->open(extension == ".avi" ? "FFV1" : "avc1", fps);
-    if (!open && extension == ".mp4") {
+    if (extension == ".avi") {
+        impl_->open(FilmCodec::lossless, "FFV1", fps);
+    } else if (LibavEncoder::knows(FilmCodec::h264)) {
+        impl_->open(FilmCodec::h264, "avc1", fps);
+    } else {
         log::warn("no H.264 encoder here; '" + path + "' is written as MPEG-4 part 2 (mp4v)");
-        open = impl_->open("mp4v", fps);
-    }
-    if (!open) {
-        impl_->drop_part();
-        throw UserError("cannot write video '" + path + "': no encoder for " + extension + " in this OpenCV");
+        impl_->open(FilmCodec::mpeg4, "mp4v", fps);
     }
     impl_->encoder = std::thread([impl = impl_.get()] { impl->encode(); });
 }
@@ -143,6 +156,7 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, double 
 VideoWriter::~VideoWriter() {
     if (impl_->closed) return;
     impl_->stop_encoder();
+    impl_->writer.reset();
     impl_->drop_part();
 }
 
@@ -150,13 +164,16 @@ void VideoWriter::add(const Image8& frame) {
     CATHLAB_CHECK(!impl_->closed, "the film is closed");
     CATHLAB_CHECK(frame.width == impl_->width && frame.height == impl_->height,
                   "a frame's size differs from the film's");
-    const cv::Mat rgb(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.rgb.data()));
-    cv::Mat bgr;
-    cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
     std::unique_lock lock(impl_->mutex);
     impl_->changed.wait(lock, [&] { return impl_->queue.size() < queue_limit || !impl_->failure.empty(); });
     if (!impl_->failure.empty()) throw UserError("video '" + impl_->path + "' cannot go on: " + impl_->failure);
-    impl_->queue.push_back(std::move(bgr));
+    Image8 copy;
+    if (!impl_->spent.empty()) {
+        copy = std::move(impl_->spent.back());
+        impl_->spent.pop_back();
+    }
+    copy = frame;
+    impl_->queue.push_back(std::move(copy));
     ++impl_->added;
     lock.unlock();
     impl_->changed.notify_all();
@@ -165,6 +182,7 @@ void VideoWriter::add(const Image8& frame) {
 void VideoWriter::close() {
     if (impl_->closed) return;
     impl_->stop_encoder();
+    impl_->finish();
     impl_->closed = true;
     try {
         if (!impl_->failure.empty()) throw UserError("video '" + impl_->path + "' failed: " + impl_->failure);

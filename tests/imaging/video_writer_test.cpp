@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include "core/errors.h"
@@ -56,6 +59,39 @@ TEST_F(Video, AnAviKeepsEveryByte) {
     EXPECT_EQ(video.codec(), "FFV1");
     EXPECT_EQ(read_video_frame(file("a.avi"), 1).rgb, frame.rgb);
     EXPECT_THROW(read_video_frame(file("a.avi"), 2), UserError);
+}
+
+TEST_F(Video, TheSamePicturesGiveTheSameBytes) {
+    for (const char* ending : {".mp4", ".avi"}) {
+        std::array<std::string, 2> bytes;
+        for (std::string& film : bytes) {
+            const std::string path = (folder_ / "a").string() + ending;
+            VideoWriter video(path, 128, 64, 15.0);
+            for (int i = 0; i < 40; ++i) video.add(moving_square(128, 64, 2 * i));
+            video.close();
+            std::ifstream file(path, std::ios::binary);
+            film.assign(std::istreambuf_iterator<char>(file), {});
+        }
+        EXPECT_GT(bytes[0].size(), 1000U);
+        EXPECT_TRUE(bytes[0] == bytes[1]) << ending;
+    }
+}
+
+TEST_F(Video, AFluoroscopysGreyStaysGreyAndAsBright) {
+    VideoWriter video(file("a.mp4"), 128, 64, 15.0);
+    Image8 ramp(128, 64);
+    for (std::size_t i = 0; i < ramp.rgb.size(); ++i) ramp.rgb[i] = static_cast<std::uint8_t>(i / 3 % 128 * 2);
+    for (int i = 0; i < 5; ++i) video.add(ramp);
+    video.close();
+    const Image8 seen = read_video_frame(file("a.mp4"), 2);
+    for (std::size_t i = 0; i < seen.rgb.size(); ++i) EXPECT_NEAR(seen.rgb[i], ramp.rgb[i], 6) << i;
+    double error = 0.0, cast = 0.0;
+    for (std::size_t i = 0; i < seen.rgb.size(); i += 3) {
+        error += std::abs(seen.rgb[i + 1] - ramp.rgb[i + 1]);
+        cast += std::abs(seen.rgb[i] - seen.rgb[i + 2]);
+    }
+    EXPECT_LT(error / (128 * 64), 1.5);
+    EXPECT_LT(cast / (128 * 64), 0.5);
 }
 
 TEST_F(Video, GivenUpLeavesNothing) {
