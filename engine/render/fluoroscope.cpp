@@ -14,6 +14,7 @@
 #include "render/fast_math.h"
 #include "render/gl_device.h"
 #include "render/path_lengths.h"
+#include "render/path_raster.h"
 #include "render/path_surface.h"
 #include "render/projection.h"
 
@@ -117,13 +118,10 @@ struct Fluoroscope::Impl {
     std::unique_ptr<BeamTable> beam;
     double beam_kvp = 0, beam_copper = -1;
 
-    // One GL surface a solid, lumen and outer wall.
-    std::vector<std::unique_ptr<PathSurface>> solid_surfaces;
+    std::vector<std::unique_ptr<PathSurface>> solid_surfaces;  // one a solid
     std::uint64_t solids_revision = 0;
     bool solids_known = false;
-    std::unique_ptr<PathSurface> lumen, wall;
-    std::uint64_t lumen_revision = 0;
-    std::size_t lumen_triangles = 0;
+    PathRaster raster;  // of the lumen and of the wall's outer surface
 
     // The context of the present view.
     ViewKey context, view;
@@ -132,12 +130,20 @@ struct Fluoroscope::Impl {
     double reference = 1, coarse_mean = 0, photons_of_kerma = 1;
     std::size_t context_bad = 0, bad = 0;
 
+    // What a frame's rays pass beside the context.
+    struct Part {
+        PathLengths lengths;
+        BinValues mu, mu_of_contrast;
+        bool with_contrast() const { return !lengths.contrast_mm_mg_ml.values.empty(); }
+    };
+
     // One frame.
     PathLengths lengths;
     DeviceLengths devices;
     std::vector<ChordPiece> pieces;
     std::vector<BinValues> device_mu;
-    std::vector<std::pair<ImageF, BinValues>> moving;
+    std::vector<Part> parts;  // kept for their memory; the first part_count are the frame's
+    std::size_t part_count = 0;
     ImageF intensity, signal, history, log_image;
     std::vector<std::uint8_t> grey;
 
@@ -153,7 +159,7 @@ struct Fluoroscope::Impl {
         std::vector<Vec3> world;
         world.reserve(solid.mesh.vertices.size());
         for (const Vec3& p : solid.mesh.vertices) world.push_back(solid.pose.to_world(p));
-        buffer.set_vertices(surface, world, {});
+        buffer.set_vertices(surface, world);
     }
 
     void upload_solids(const FrameDescription& f) {
@@ -177,6 +183,11 @@ struct Fluoroscope::Impl {
             groups[{f.solids[i].material, f.solids[i].surrounding}].push_back(solid_surfaces[i].get());
         }
         return groups;
+    }
+
+    Part& next_part() {
+        if (part_count == parts.size()) parts.emplace_back();
+        return parts[part_count++];
     }
 
     void make_context(const FrameDescription& f, const Projection& projection);
@@ -252,35 +263,22 @@ void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection
 }
 
 void Fluoroscope::Impl::draw_moving(const FrameDescription& f, const Projection& projection) {
-    moving.clear();
     for (const auto& [media, surfaces] : groups_of(f, true)) {
-        buffer.draw(projection, surfaces, lengths);
-        bad += lengths.bad_pixels;
-        moving.emplace_back(lengths.length_mm, difference(*beam, media.first, media.second));
+        Part& part = next_part();
+        buffer.draw(projection, surfaces, part.lengths);
+        part.mu = difference(*beam, media.first, media.second);
+        bad += part.lengths.bad_pixels;
     }
 }
 
 void Fluoroscope::Impl::draw_lumen(const FrameDescription& f, const Projection& projection) {
     if (f.lumen.triangles.empty()) return;
-    const bool fresh =
-        !lumen || lumen_revision != f.lumen.topology_revision || lumen_triangles != f.lumen.triangles.size();
-    if (fresh) {
-        lumen = buffer.make_surface();
-        wall = buffer.make_surface();
-        buffer.set_triangles(*lumen, f.lumen.triangles);
-        buffer.set_triangles(*wall, f.lumen.triangles);
-        lumen_revision = f.lumen.topology_revision;
-        lumen_triangles = f.lumen.triangles.size();
-    }
     const bool has_wall = !f.lumen.wall_material.empty() && !f.lumen.wall_mm.empty();
-    const std::string& around = has_wall ? f.lumen.wall_material : f.lumen.surrounding;
-    buffer.set_vertices(*lumen, f.lumen.vertices, f.lumen.contrast_mg_ml);
-    buffer.draw(projection, {lumen.get()}, lengths);
-    bad += lengths.bad_pixels;
-    moving.emplace_back(std::move(lengths.length_mm), difference(*beam, f.lumen.material, around));
-    if (!lengths.contrast_mm_mg_ml.values.empty()) {
-        moving.emplace_back(std::move(lengths.contrast_mm_mg_ml), beam->iodine());
-    }
+    Part& inner = next_part();
+    raster.draw(projection, f.lumen.vertices, f.lumen.triangles, f.lumen.contrast_mg_ml, inner.lengths);
+    inner.mu = difference(*beam, f.lumen.material, has_wall ? f.lumen.wall_material : f.lumen.surrounding);
+    if (inner.with_contrast()) inner.mu_of_contrast = beam->iodine();
+    bad += inner.lengths.bad_pixels;
     if (!has_wall) return;
     const std::size_t n = f.lumen.vertices.size();
     CATHLAB_CHECK(f.lumen.wall_mm.size() == n, "one wall thickness a vertex");
@@ -288,10 +286,10 @@ void Fluoroscope::Impl::draw_lumen(const FrameDescription& f, const Projection& 
         f.lumen.normals.size() == n ? f.lumen.normals : vertex_normals({f.lumen.vertices, f.lumen.triangles});
     std::vector<Vec3> outer(n);
     for (std::size_t i = 0; i < n; ++i) outer[i] = f.lumen.vertices[i] + f.lumen.wall_mm[i] * normals[i];
-    buffer.set_vertices(*wall, outer, {});
-    buffer.draw(projection, {wall.get()}, lengths);
-    bad += lengths.bad_pixels;
-    moving.emplace_back(lengths.length_mm, difference(*beam, f.lumen.wall_material, f.lumen.surrounding));
+    Part& wall = next_part();
+    raster.draw(projection, outer, f.lumen.triangles, {}, wall.lengths);
+    wall.mu = difference(*beam, f.lumen.wall_material, f.lumen.surrounding);
+    bad += wall.lengths.bad_pixels;
 }
 
 void Fluoroscope::Impl::draw_all_devices(const FrameDescription& f, const Projection& projection) {
@@ -312,9 +310,12 @@ void Fluoroscope::Impl::draw_all_devices(const FrameDescription& f, const Projec
 }
 
 void Fluoroscope::Impl::add_exponent(std::size_t i, BinValues& exponent) const {
-    for (const auto& [length, mu] : moving) {
-        const float l = length.values[i];
-        for (std::size_t k = 0; k < energy_bins; ++k) exponent[k] += mu[k] * l;
+    const auto add = [&](const BinValues& mu, float amount) {
+        for (std::size_t k = 0; k < energy_bins; ++k) exponent[k] += mu[k] * amount;
+    };
+    for (std::size_t p = 0; p < part_count; ++p) {
+        add(parts[p].mu, parts[p].lengths.length_mm.values[i]);
+        if (parts[p].with_contrast()) add(parts[p].mu_of_contrast, parts[p].lengths.contrast_mm_mg_ml.values[i]);
     }
 }
 
@@ -341,7 +342,8 @@ void Fluoroscope::Impl::combine() {
         Batch batch;
         for (std::size_t i = begin; i < end; ++i) {
             bool touched = false;
-            for (const auto& [length, mu] : moving) touched = touched || length.values[i] != 0.0F;
+            for (std::size_t p = 0; p < part_count; ++p)
+                touched = touched || parts[p].lengths.length_mm.values[i] != 0.0F;
             if (touched) {
                 add_exponent(i, batch.add(i));
                 if (batch.full()) attenuate_pixels(batch);
@@ -445,6 +447,7 @@ const std::vector<std::uint8_t>& Fluoroscope::draw(const FrameDescription& frame
         self.context = std::move(context);
     }
     self.bad = self.context_bad;
+    self.part_count = 0;
     self.draw_moving(frame, projection);
     self.draw_lumen(frame, projection);
     self.draw_all_devices(frame, projection);

@@ -17,17 +17,14 @@ struct PathLengthBuffer::Impl {
 
     GlDevicePtr device;
     GlProgram program;
-    std::unique_ptr<GlFramebuffer> plain, with_values;
-    std::vector<float> sums, squares;
+    std::unique_ptr<GlFramebuffer> buffer;
+    std::vector<float> sums;
 
-    GlFramebuffer& buffer(const Projection& projection, bool values) {
-        auto& slot = values ? with_values : plain;
-        if (!slot || slot->width() != projection.width() || slot->height() != projection.height()) {
-            const std::vector<GLenum> formats =
-                values ? std::vector<GLenum>{GL_RGBA32F, GL_RGBA32F} : std::vector<GLenum>{GL_RG32F};
-            slot = std::make_unique<GlFramebuffer>(device, projection.width(), projection.height(), formats, false);
-        }
-        return *slot;
+    GlFramebuffer& buffer_of(const Projection& projection) {
+        if (!buffer || buffer->width() != projection.width() || buffer->height() != projection.height())
+            buffer = std::make_unique<GlFramebuffer>(device, projection.width(), projection.height(),
+                                                     std::vector<GLenum>{GL_RG32F}, false);
+        return *buffer;
     }
 };
 
@@ -50,26 +47,21 @@ void PathLengthBuffer::set_triangles(PathSurface& surface, const std::vector<Tri
     surface.mesh.set_indices(indices);
 }
 
-void PathLengthBuffer::set_vertices(PathSurface& surface, const std::vector<Vec3>& vertices,
-                                    const std::vector<double>& values) const {
-    CATHLAB_CHECK(values.empty() || values.size() == vertices.size(), "one value a vertex");
+void PathLengthBuffer::set_vertices(PathSurface& surface, const std::vector<Vec3>& vertices) const {
     impl_->device->make_current();
     std::vector<float> data;
-    data.reserve(4 * vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        for (int k = 0; k < 3; ++k) data.push_back(static_cast<float>(vertices[i][k]));
-        data.push_back(values.empty() ? 0.0F : static_cast<float>(values[i]));
+    data.reserve(3 * vertices.size());
+    for (const Vec3& v : vertices) {
+        for (int k = 0; k < 3; ++k) data.push_back(static_cast<float>(v[k]));
     }
     surface.mesh.set_vertices(data);
-    surface.has_values = std::any_of(values.begin(), values.end(), [](double v) { return v > 0.0; });
 }
 
 void PathLengthBuffer::draw(const Projection& projection, const std::vector<const PathSurface*>& surfaces,
                             PathLengths& out) {
     impl_->device->make_current();
     const GlTable& gl = impl_->device->gl();
-    const bool values = std::any_of(surfaces.begin(), surfaces.end(), [](const auto* s) { return s->has_values; });
-    GlFramebuffer& buffer = impl_->buffer(projection, values);
+    GlFramebuffer& buffer = impl_->buffer_of(projection);
     buffer.bind();
     gl.Disable(GL_DEPTH_TEST);
     gl.Disable(GL_CULL_FACE);
@@ -96,32 +88,20 @@ void PathLengthBuffer::draw(const Projection& projection, const std::vector<cons
 
     const std::size_t count =
         static_cast<std::size_t>(projection.width()) * static_cast<std::size_t>(projection.height());
-    const std::size_t channels = values ? 4 : 2;
-    impl_->sums.resize(channels * count);
-    buffer.read(0, values ? GL_RGBA : GL_RG, GL_FLOAT, impl_->sums.data());
-    if (values) {
-        impl_->squares.resize(count);
-        buffer.read(1, GL_RED, GL_FLOAT, impl_->squares.data());
-    }
+    impl_->sums.resize(2 * count);
+    buffer.read(0, GL_RG, GL_FLOAT, impl_->sums.data());
     impl_->device->check("path lengths");
 
     out.bad_pixels = 0;
     out.length_mm.width = out.contrast_mm_mg_ml.width = projection.width();
     out.length_mm.height = out.contrast_mm_mg_ml.height = projection.height();
     out.length_mm.values.resize(count);
-    out.contrast_mm_mg_ml.values.assign(values ? count : 0, 0.0F);
+    out.contrast_mm_mg_ml.values.clear();
     for (std::size_t i = 0; i < count; ++i) {
-        const float* sum = impl_->sums.data() + channels * i;
+        const float* sum = impl_->sums.data() + 2 * i;
         const bool bad = std::fabs(sum[1]) > 0.5F;
         out.bad_pixels += bad ? 1 : 0;
-        const float length = bad ? 0.0F : sum[0];
-        out.length_mm.values[i] = length;
-        if (values && length > 1e-3F) {
-            // For one entry (d0, c0) and one exit (d1, c1): sum c d = c1 d1 - c0 d0, sum c = c1 - c0, and the mean
-            // depth is (d1^2 - d0^2) / 2 L, which together give the trapezoid (c0 + c1) / 2 * L exactly.
-            const float middle = 0.5F * impl_->squares[i] / length;
-            out.contrast_mm_mg_ml.values[i] = std::max(0.0F, sum[2] - sum[3] * middle);
-        }
+        out.length_mm.values[i] = bad ? 0.0F : sum[0];
     }
 }
 

@@ -1,5 +1,5 @@
 // The L-buffer: how many mm of a closed surface's inside every ray passes, in float32 (Freud et al. 2006, Vidal et al.
-// 2009).
+// 2009).  Here by GL, for the torso's solids; path_raster.h has the lumen.
 #pragma once
 
 #include <memory>
@@ -28,11 +28,10 @@ public:
     explicit PathLengthBuffer(std::shared_ptr<GlDevice> device);
     ~PathLengthBuffer();
 
-    /// vertices in world mm; values: one number a vertex to be integrated along the ray (trapezoid between the points
-    /// of entry and exit), or empty.
     std::unique_ptr<PathSurface> make_surface() const;
     void set_triangles(PathSurface& surface, const std::vector<Triangle>& triangles) const;
-    void set_vertices(PathSurface& surface, const std::vector<Vec3>& vertices, const std::vector<double>& values) const;
+    /// vertices: mm, world
+    void set_vertices(PathSurface& surface, const std::vector<Vec3>& vertices) const;
 
     /// Draws the surfaces together.  Cost: one clear, one draw a surface, one read-back.
     void draw(const Projection& projection, const std::vector<const PathSurface*>& surfaces, PathLengths& out);

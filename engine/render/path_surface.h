@@ -7,9 +7,8 @@ namespace cathlab {
 
 class PathSurface {
 public:
-    explicit PathSurface(GlDevicePtr device) : mesh(std::move(device), {3, 1}) {}
+    explicit PathSurface(GlDevicePtr device) : mesh(std::move(device), {3}) {}
     GlMesh mesh;
-    bool has_values = false;
 };
 
 }  // namespace cathlab

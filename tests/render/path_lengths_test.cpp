@@ -5,6 +5,7 @@
 #include "core/errors.h"
 #include "render/gl_device.h"
 #include "render/gl_target.h"
+#include "render/path_raster.h"
 #include "render/path_surface.h"
 #include "scene.h"
 
@@ -13,25 +14,47 @@ namespace {
 
 using namespace testing_shapes;
 
-class PathLength : public testing::Test {
+// Both ways to the same lengths: GL for the torso's solids, our own scan conversion for the lumen.
+enum class By { gl, raster };
+
+PathLengths by_gl(const CArmView& view, const std::vector<TriMesh>& meshes, int size) {
+    static const auto device = std::make_shared<GlDevice>(make_osmesa_target());
+    static PathLengthBuffer buffer(device);
+    std::vector<std::unique_ptr<PathSurface>> kept;
+    std::vector<const PathSurface*> surfaces;
+    for (const TriMesh& mesh : meshes) {
+        kept.push_back(buffer.make_surface());
+        buffer.set_triangles(*kept.back(), mesh.triangles);
+        buffer.set_vertices(*kept.back(), mesh.vertices);
+        surfaces.push_back(kept.back().get());
+    }
+    PathLengths out;
+    buffer.draw(Projection(view, size, size), surfaces, out);
+    return out;
+}
+
+PathLengths by_raster(const CArmView& view, const std::vector<TriMesh>& meshes, int size,
+                      const std::vector<double>& values = {}) {
+    TriMesh all;
+    for (const TriMesh& mesh : meshes) {
+        const Triangle shift = Triangle::Constant(static_cast<Index>(all.vertices.size()));
+        all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+        for (const Triangle& t : mesh.triangles) all.triangles.emplace_back(t + shift);
+    }
+    PathRaster raster;
+    PathLengths out;
+    raster.draw(Projection(view, size, size), all.vertices, all.triangles, values, out);
+    return out;
+}
+
+class PathLength : public testing::TestWithParam<By> {
 protected:
-    static PathLengths draw(const CArmView& view, const std::vector<TriMesh>& meshes, int size = 256,
-                            const std::vector<double>& values = {}) {
-        static const auto device = std::make_shared<GlDevice>(make_osmesa_target());
-        static PathLengthBuffer buffer(device);
-        std::vector<std::unique_ptr<PathSurface>> kept;
-        std::vector<const PathSurface*> surfaces;
-        for (const TriMesh& mesh : meshes) {
-            kept.push_back(buffer.make_surface());
-            buffer.set_triangles(*kept.back(), mesh.triangles);
-            buffer.set_vertices(*kept.back(), mesh.vertices, values);
-            surfaces.push_back(kept.back().get());
-        }
-        PathLengths out;
-        buffer.draw(Projection(view, size, size), surfaces, out);
-        return out;
+    static PathLengths draw(const CArmView& view, const std::vector<TriMesh>& meshes, int size = 256) {
+        return GetParam() == By::gl ? by_gl(view, meshes, size) : by_raster(view, meshes, size);
     }
 };
+INSTANTIATE_TEST_SUITE_P(By, PathLength, testing::Values(By::gl, By::raster),
+                         [](const auto& way) { return way.param == By::gl ? "gl" : "raster"; });
 
 // Mean and largest |error| of drawn path lengths against a closed form, relative to `scale`, where the truth is above
 // `least`.
@@ -53,7 +76,7 @@ std::pair<double, double> errors(const PathLengths& drawn, const Projection& pro
     return {count > 0 ? sum / count : 1e9, largest};
 }
 
-TEST_F(PathLength, ASlabSeenAtAnyAngleIsItsThicknessOverTheCosine) {
+TEST_P(PathLength, ASlabSeenAtAnyAngleIsItsThicknessOverTheCosine) {
     for (const double angle : {-50.0, 0.0, 25.0, 60.0}) {
         const CArmView v = view(angle, 60);
         const PathLengths drawn = draw(v, {box({-300, -20, -300}, {300, 30, 300})});
@@ -65,7 +88,7 @@ TEST_F(PathLength, ASlabSeenAtAnyAngleIsItsThicknessOverTheCosine) {
     }
 }
 
-TEST_F(PathLength, ASphereIsItsChordAndTheErrorIsSecondOrder) {
+TEST_P(PathLength, ASphereIsItsChordAndTheErrorIsSecondOrder) {
     const CArmView v = view(30, 160);
     const Vec3 center(5, -3, 8);
     const auto truth = [&](const Vec3& o, const Vec3& d) { return ball_chord(o, d, center, 40); };
@@ -76,7 +99,7 @@ TEST_F(PathLength, ASphereIsItsChordAndTheErrorIsSecondOrder) {
     EXPECT_NEAR(coarse / fine, 4.0, 0.6);
 }
 
-TEST_F(PathLength, ACylinderIsItsChord) {
+TEST_P(PathLength, ACylinderIsItsChord) {
     const CArmView v = view(-20, 80);
     const PathLengths drawn = draw(v, {cylinder(Vec3::Zero(), 15, 400, 160)});
     const auto truth = [](const Vec3& o, const Vec3& d) {
@@ -87,7 +110,7 @@ TEST_F(PathLength, ACylinderIsItsChord) {
     EXPECT_LT(errors(drawn, Projection(v, 256, 256), 0.1, 30, truth).first, 1e-3);
 }
 
-TEST_F(PathLength, TwoSurfacesAddAndNestedOnesAreCountedTwice) {
+TEST_P(PathLength, TwoSurfacesAddAndNestedOnesAreCountedTwice) {
     const CArmView v = view(0, 160);
     const PathLengths drawn = draw(v, {sphere(Vec3::Zero(), 40, 70), sphere(Vec3(6, 2, 4), 15, 50)});
     const auto truth = [](const Vec3& o, const Vec3& d) {
@@ -97,7 +120,7 @@ TEST_F(PathLength, TwoSurfacesAddAndNestedOnesAreCountedTwice) {
     EXPECT_EQ(drawn.bad_pixels, 0U);
 }
 
-TEST_F(PathLength, AHoleIsCountedAndDrawsNothing) {
+TEST_P(PathLength, AHoleIsCountedAndDrawsNothing) {
     TriMesh open = sphere(Vec3::Zero(), 30, 20);
     open.triangles.erase(open.triangles.begin() + 800, open.triangles.begin() + 806);
     const PathLengths drawn = draw(view(0, 120), {open});
@@ -105,14 +128,14 @@ TEST_F(PathLength, AHoleIsCountedAndDrawsNothing) {
     for (const float length : drawn.length_mm.values) EXPECT_LT(std::fabs(length), 61.0F);
 }
 
-TEST_F(PathLength, ContrastMediumIsItsConcentrationTimesThePath) {
+TEST(PathRaster, ContrastMediumIsItsConcentrationTimesThePath) {
     const CArmView v = view(10, 120);
     const TriMesh ball = sphere(Vec3::Zero(), 30, 40);
-    const PathLengths even = draw(v, {ball}, 128, std::vector<double>(ball.vertices.size(), 50.0));
+    const PathLengths even = by_raster(v, {ball}, 128, std::vector<double>(ball.vertices.size(), 50.0));
     std::vector<double> ramp;  // along the axis of view: the integral needs the trapezoid
     const Vec3 axis = (v.detector_center - v.source).normalized();
     for (const Vec3& p : ball.vertices) ramp.push_back(40 + p.dot(axis));
-    const PathLengths sloped = draw(v, {ball}, 128, ramp);
+    const PathLengths sloped = by_raster(v, {ball}, 128, ramp);
     const Projection projection(v, 128, 128);
     for (const int y : {40, 64, 90}) {
         for (const int x : {50, 64, 70}) {
@@ -123,6 +146,27 @@ TEST_F(PathLength, ContrastMediumIsItsConcentrationTimesThePath) {
             EXPECT_NEAR(sloped.contrast_mm_mg_ml.at(x, y), (40 + middle.dot(axis)) * length, 0.5 * length);
         }
     }
+}
+
+TEST(PathRaster, ASurfaceFinerThanThePixelsIsClosedAndKeepsItsVolume) {
+    const CArmView v = view(-25, 100);
+    const TriMesh ball = sphere(Vec3(3, -4, 2), 20, 160);  // 102,000 triangles on some 20,000 pixels
+    const PathLengths drawn = by_raster(v, {ball}, 256);
+    EXPECT_EQ(drawn.bad_pixels, 0U);
+    const Projection projection(v, 256, 256);
+    const auto truth = [](const Vec3& o, const Vec3& d) { return ball_chord(o, d, Vec3(3, -4, 2), 20); };
+    const auto [mean, largest] = errors(drawn, projection, 0.5, 40, truth);
+    EXPECT_LT(mean, 1e-3);
+    EXPECT_LT(largest, 2e-2);  // at the rim, where the chord rises steeply
+}
+
+TEST(PathRaster, WhatLiesPartlyBesideThePictureIsDrawnAsFarAsItIsSeen) {
+    const CArmView v = view(0, 60);
+    const TriMesh tube = cylinder(Vec3(12, 0, 0), 8, 400, 64);
+    const PathLengths whole = by_raster(v, {tube}, 128), gl = by_gl(v, {tube}, 128);
+    EXPECT_EQ(whole.bad_pixels, 0U);
+    for (std::size_t i = 0; i < whole.length_mm.values.size(); ++i)
+        EXPECT_NEAR(whole.length_mm.values[i], gl.length_mm.values[i], 0.02) << i;
 }
 
 TEST(Projection, AFiducialFallsWhereThePinholeSays) {
@@ -139,7 +183,7 @@ TEST(Projection, AFiducialFallsWhereThePinholeSays) {
     EXPECT_LT((p - v.source).cross(back).norm(), 1e-9);
 }
 
-TEST_F(PathLength, AFiducialsShadowLiesWithinATenthOfAPixel) {
+TEST_P(PathLength, AFiducialsShadowLiesWithinATenthOfAPixel) {
     const CArmView v = view(35, 200);
     const Projection projection(v, 512, 512);
     const Vec3 p(20, -15, 33);

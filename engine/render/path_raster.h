@@ -1,0 +1,52 @@
+// The L-buffer of one closed surface of very many small triangles that move in every frame: the lumen.  What GL's
+// software rasteriser spends on setting up a triangle of a few pixels is several times what the triangle itself costs.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/mesh.h"
+#include "render/path_lengths.h"
+
+namespace cathlab {
+
+/// Scan conversion of the surface as the source sees it: every pixel's centre adds the distance where its ray leaves
+/// the surface and takes off that where it enters [freud2006], into float32.  The distance is that to the triangle's
+/// plane, exactly: 1 / depth is linear over the picture.  Corners are snapped to 1/256 pixel and an edge's pixels
+/// belong to one of its two triangles, so that a closed surface has as many entries as exits on every ray.
+class PathRaster {
+public:
+    /// vertices: mm, world, and wholly on the detector's side of the source; values: one a vertex, >= 0, to be
+    /// integrated along the ray (trapezoid between the points of entry and exit), or empty.
+    void draw(const Projection& projection, std::span<const Vec3> vertices, std::span<const Triangle> triangles,
+              std::span<const double> values, PathLengths& out);
+
+private:
+    struct Corner {
+        double x, y, z;     // mm along the detector's rows, its columns, and towards it, from the source
+        double inverse;     // 1 / z
+        std::int64_t i, j;  // pixel coordinates in 1/256, 0 = the first pixel's centre
+    };
+    struct Sum {
+        float depth = 0.0F;  // leaving - entering, along the detector's normal, less a reference
+        float exits = 0.0F;  // leaving - entering
+    };
+    struct Moments {
+        float value_depth = 0.0F, value = 0.0F, depth_2 = 0.0F;  // the same of v d, v, d^2
+    };
+
+    template <bool with_values>
+    void add(const Triangle& t, std::span<const double> values);
+    void project(const Projection& projection, std::span<const Vec3> vertices);
+
+    std::vector<Corner> corners_;
+    std::vector<double> slope_x_, slope_y_;  // of the ray through a column's (row's) centre: mm a mm of depth
+    std::vector<Sum> sums_;
+    std::vector<Moments> moments_;
+    double reference_ = 0.0;  // keeps the sums small
+    int width_ = 0, height_ = 0;
+    bool mirrored_ = false;
+};
+
+}  // namespace cathlab
