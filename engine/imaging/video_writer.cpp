@@ -1,16 +1,11 @@
 #include "imaging/video_writer.h"
 
 #include <algorithm>
-#include <condition_variable>
-#include <deque>
 #include <filesystem>
 #include <fstream>
-#include <mutex>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <optional>
-#include <thread>
-#include <vector>
 
 #include "core/check.h"
 #include "core/errors.h"
@@ -23,7 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t queue_limit = 8;                // frames that may wait for the encoder
 constexpr std::uintmax_t least_free_bytes = 4 << 20;  // a folder with less than this is full for a film
 
 std::string part_name(const fs::path& path) {
@@ -55,15 +49,7 @@ struct VideoWriter::Impl {
     int width = 0, height = 0;
     std::size_t added = 0;
     bool closed = false;
-    std::optional<LibavEncoder> writer;  // the encoder's thread uses it while that runs
-
-    std::thread encoder;
-    std::mutex mutex;
-    std::condition_variable changed;
-    std::deque<Image8> queue;
-    std::vector<Image8> spent;  // encoded pictures, whose memory the next ones take
-    bool ending = false;
-    std::string failure;  // what stopped the encoder
+    std::optional<LibavEncoder> writer;
 
     void open(FilmCodec wanted, const char* name, double fps) {
         codec = name;
@@ -73,49 +59,6 @@ struct VideoWriter::Impl {
             drop_part();
             throw UserError("cannot write video '" + path + "': " + error.what());
         }
-    }
-
-    void encode() {
-        Image8 frame;
-        for (;;) {
-            {
-                std::unique_lock lock(mutex);
-                if (!frame.rgb.empty()) spent.push_back(std::move(frame));
-                changed.wait(lock, [&] { return ending || !queue.empty(); });
-                if (queue.empty()) return;
-                frame = std::move(queue.front());
-                queue.pop_front();
-            }
-            changed.notify_all();
-            try {
-                writer->write(frame);
-            } catch (const std::exception& error) {
-                const std::scoped_lock lock(mutex);
-                failure = error.what();
-                queue.clear();
-                changed.notify_all();
-                return;
-            }
-        }
-    }
-
-    void stop_encoder() {
-        {
-            const std::scoped_lock lock(mutex);
-            ending = true;
-        }
-        changed.notify_all();
-        if (encoder.joinable()) encoder.join();
-    }
-
-    // After the encoder's thread has ended.
-    void finish() {
-        try {
-            if (failure.empty() && added > 0) writer->finish();
-        } catch (const std::exception& error) {
-            failure = error.what();
-        }
-        writer.reset();
     }
 
     void drop_part() const {
@@ -150,12 +93,10 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, double 
         log::warn("no H.264 encoder here; '" + path + "' is written as MPEG-4 part 2 (mp4v)");
         impl_->open(FilmCodec::mpeg4, "mp4v", fps);
     }
-    impl_->encoder = std::thread([impl = impl_.get()] { impl->encode(); });
 }
 
 VideoWriter::~VideoWriter() {
     if (impl_->closed) return;
-    impl_->stop_encoder();
     impl_->writer.reset();
     impl_->drop_part();
 }
@@ -164,29 +105,25 @@ void VideoWriter::add(const Image8& frame) {
     CATHLAB_CHECK(!impl_->closed, "the film is closed");
     CATHLAB_CHECK(frame.width == impl_->width && frame.height == impl_->height,
                   "a frame's size differs from the film's");
-    std::unique_lock lock(impl_->mutex);
-    impl_->changed.wait(lock, [&] { return impl_->queue.size() < queue_limit || !impl_->failure.empty(); });
-    if (!impl_->failure.empty()) throw UserError("video '" + impl_->path + "' cannot go on: " + impl_->failure);
-    Image8 copy;
-    if (!impl_->spent.empty()) {
-        copy = std::move(impl_->spent.back());
-        impl_->spent.pop_back();
+    try {
+        impl_->writer->write(frame);
+    } catch (const std::runtime_error& error) {
+        throw UserError("video '" + impl_->path + "' cannot go on: " + error.what());
     }
-    copy = frame;
-    impl_->queue.push_back(std::move(copy));
     ++impl_->added;
-    lock.unlock();
-    impl_->changed.notify_all();
 }
 
 void VideoWriter::close() {
     if (impl_->closed) return;
-    impl_->stop_encoder();
-    impl_->finish();
     impl_->closed = true;
     try {
-        if (!impl_->failure.empty()) throw UserError("video '" + impl_->path + "' failed: " + impl_->failure);
         if (impl_->added == 0) throw UserError("video '" + impl_->path + "' has no frame and was not written");
+        try {
+            impl_->writer->finish();
+        } catch (const std::runtime_error& error) {
+            throw UserError("video '" + impl_->path + "' failed: " + error.what());
+        }
+        impl_->writer.reset();
         const VideoFacts facts = read_video_facts(impl_->part);
         if (facts.frames != impl_->added || facts.width != impl_->width || facts.height != impl_->height) {
             throw UserError("video '" + impl_->path + "' reads back as " + std::to_string(facts.frames) +
@@ -198,6 +135,7 @@ void VideoWriter::close() {
         fs::rename(impl_->part, impl_->path, error);
         if (error) throw UserError("cannot write video '" + impl_->path + "': " + error.message());
     } catch (...) {
+        impl_->writer.reset();
         impl_->drop_part();
         throw;
     }

@@ -10,7 +10,7 @@
 namespace cathlab {
 
 /// Writes NAME.part.EXT and renames it to NAME.EXT in close(), so the final name never holds half a film.
-/// Encoding runs in a thread of its own behind a short queue; the file's bytes do not depend on its timing.
+/// Encodes on the caller's thread and takes no other, so that a program's threads are those that it was given.
 /// The codec follows the name: .avi = FFV1 (lossless), .mp4 = H.264 (avc1), or MPEG-4 part 2 (mp4v) with a line in the
 /// log where the system has no H.264 encoder.
 class VideoWriter {
@@ -23,7 +23,7 @@ public:
     VideoWriter(const VideoWriter&) = delete;
     VideoWriter& operator=(const VideoWriter&) = delete;
 
-    /// Appends a frame (copied).  Throws UserError where the encoder stopped; CATHLAB_CHECK on a wrong size.
+    /// Appends a frame.  Throws UserError where the encoder stopped; CATHLAB_CHECK on a wrong size.
     void add(const Image8& frame);
 
     /// Finishes what is there, reads it back, checks number and size of the frames, then gives it its final name.

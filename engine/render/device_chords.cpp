@@ -13,38 +13,78 @@ namespace {
 
 struct Span {
     double from = 0, to = -1;
+
     double length() const { return to > from ? to - from : 0.0; }
+    // Keeps where slope * t + height <= 0.
+    void cut(double slope, double height) {
+        if (std::fabs(slope) < 1e-12) {
+            if (height > 0) *this = {};
+        } else if (slope > 0) {
+            to = std::min(to, -height / slope);
+        } else {
+            from = std::max(from, -height / slope);
+        }
+    }
 };
 
-// Line inside the infinite cylinder of radius r around the line through a along axis.
-Span cylinder_span(const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& axis, double r) {
-    const Vec3 d = direction - direction.dot(axis) * axis;
-    const Vec3 rel = origin - a;
-    const Vec3 o = rel - rel.dot(axis) * axis;
-    const double dd = d.squaredNorm();
-    if (dd < 1e-14) {  // along the axis: inside all the way or not at all
-        constexpr double far = 1e9;
-        return o.squaredNorm() <= r * r ? Span{-far, far} : Span{};
-    }
-    const double middle = -o.dot(d) / dd;
-    const double disc = r * r - (o + middle * d).squaredNorm();
-    if (disc <= 0) return {};
-    const double half = std::sqrt(disc / dd);
-    return {middle - half, middle + half};
-}
+// A ray's products with what a piece is made of.
+struct RayProducts {
+    double axis, offset, plane_a, plane_b;  // direction . axis, . offset, . plane_a, . plane_b
+    double squared;                         // |direction|^2
+};
 
-// Keeps the part of the span with (p - point) . normal <= 0.
-void cut(Span& span, const Vec3& origin, const Vec3& direction, const Vec3& point, const Vec3& normal) {
-    const double slope = direction.dot(normal);
-    const double height = (origin - point).dot(normal);
-    if (std::fabs(slope) < 1e-12) {
-        if (height > 0) span = {};
-    } else if (slope > 0) {
-        span.to = std::min(span.to, -height / slope);
-    } else {
-        span.from = std::max(span.from, -height / slope);
+// What the length of a ray within a piece needs of the piece, once for all rays from the same origin.  Directions have
+// any length; lengths come out in units of it.
+struct Prepared {
+    Vec3 axis, offset;  // offset = origin - a
+    Vec3 plane_a, plane_b;
+    double along, outer, inner;  // offset . axis; squared distance of the origin from the axis - radius^2, - bore^2
+    double height_a, height_b;   // of the origin over the end planes
+    bool hollow;
+
+    Prepared(const ChordPiece& piece, const Vec3& origin)
+        : axis((piece.b - piece.a).normalized()),
+          offset(origin - piece.a),
+          plane_a(piece.plane_a),
+          plane_b(piece.plane_b),
+          along(offset.dot(axis)),
+          height_a(offset.dot(piece.plane_a)),
+          height_b((origin - piece.b).dot(piece.plane_b)),
+          hollow(piece.bore > 0.0) {
+        const double across = (offset - along * axis).squaredNorm();
+        outer = across - piece.radius * piece.radius;
+        inner = across - piece.bore * piece.bore;
     }
-}
+    RayProducts products(const Vec3& direction) const {
+        return {direction.dot(axis), direction.dot(offset), direction.dot(plane_a), direction.dot(plane_b),
+                direction.squaredNorm()};
+    }
+    double length(const RayProducts& r) const {
+        const double across = r.squared - r.axis * r.axis;  // squared length of the direction's part across the axis
+        const double half_b = r.offset - along * r.axis;
+        if (half_b * half_b < across * outer) return 0.0;  // passes by
+        const double whole = between(r, across, half_b, outer);
+        return hollow && whole > 0.0 ? whole - between(r, across, half_b, inner) : whole;
+    }
+
+private:
+    // Within the cylinder of c = squared distance of the origin from the axis - radius^2, between the end planes.
+    double between(const RayProducts& r, double across, double half_b, double c) const {
+        Span span;
+        if (across < 1e-14 * r.squared) {
+            constexpr double far = 1e9;
+            if (c <= 0) span = {-far, far};
+        } else {
+            const double disc = half_b * half_b - across * c;
+            if (disc <= 0) return 0.0;
+            const double root = std::sqrt(disc), per = 1.0 / across;
+            span = {(-half_b - root) * per, (-half_b + root) * per};
+        }
+        span.cut(r.plane_a, height_a);
+        span.cut(r.plane_b, height_b);
+        return span.length();
+    }
+};
 
 double half_ball(const Vec3& origin, const Vec3& direction, const Vec3& center, const Vec3& outward, double r) {
     const Vec3 rel = origin - center;
@@ -53,19 +93,15 @@ double half_ball(const Vec3& origin, const Vec3& direction, const Vec3& center, 
     if (disc <= 0) return 0;
     const double half = std::sqrt(disc);
     Span span{middle - half, middle + half};
-    cut(span, origin, direction, center, -outward);
+    span.cut(-direction.dot(outward), -rel.dot(outward));
     return span.length();
 }
 
-double solid_chord(const ChordPiece& p, const Vec3& axis, const Vec3& origin, const Vec3& direction, double radius) {
-    Span span = cylinder_span(origin, direction, p.a, axis, radius);
-    if (span.to > span.from) {
-        cut(span, origin, direction, p.a, p.plane_a);
-        cut(span, origin, direction, p.b, p.plane_b);
-    }
-    double sum = span.length();
-    if (p.ball_a) sum += half_ball(origin, direction, p.a, p.plane_a, radius);
-    if (p.ball_b) sum += half_ball(origin, direction, p.b, p.plane_b, radius);
+// direction: a unit vector.
+double balls(const ChordPiece& p, const Vec3& origin, const Vec3& direction) {
+    double sum = 0;
+    if (p.ball_a) sum += half_ball(origin, direction, p.a, p.plane_a, p.radius);
+    if (p.ball_b) sum += half_ball(origin, direction, p.b, p.plane_b, p.radius);
     return sum;
 }
 
@@ -78,23 +114,6 @@ struct Box {
     bool holds(double x, double y) const {
         const double s = (Vec2(x, y) - start).dot(axis);
         return s >= from && s <= to;
-    }
-};
-
-// What one ray's test needs of a piece, once for all rays from the same source.
-struct Prepared {
-    Vec3 axis, offset;  // offset = source - a
-    double along, c;    // offset . axis; squared distance of the source from the axis - r^2
-
-    Prepared(const ChordPiece& piece, const Vec3& source)
-        : axis((piece.b - piece.a).normalized()), offset(source - piece.a), along(offset.dot(axis)) {
-        c = (offset - along * axis).squaredNorm() - piece.radius * piece.radius;
-    }
-    // Sign of the discriminant of |offset + t d - (along the axis)|^2 = r^2.
-    bool near_axis(const Vec3& d) const {
-        const double da = d.dot(axis);
-        const double half_b = offset.dot(d) - along * da;
-        return half_b * half_b > (d.squaredNorm() - da * da) * c;
     }
 };
 
@@ -141,14 +160,43 @@ Box pixel_box(const ChordPiece& p, const Projection& projection) {
     return box;
 }
 
-// Columns of the row at height y whose pixels lie within reach of the axis.
+// Columns of the row at height y whose pixels' centres lie within reach of the axis.
 std::pair<int, int> columns_of(const Box& box, double y) {
     if (std::fabs(box.normal.x()) < 1e-6) return {box.x0, box.x1};
     const double middle = box.start.x() - (y - box.start.y()) * box.normal.y() / box.normal.x();
-    const double half = (box.reach + 1.0) / std::fabs(box.normal.x());
-    const double first = std::max<double>(box.x0, std::floor(middle - half));
-    const double last = std::min<double>(box.x1, std::ceil(middle + half));
+    const double half = box.reach / std::fabs(box.normal.x());
+    const double first = std::max<double>(box.x0, std::ceil(middle - half - 0.5));
+    const double last = std::min<double>(box.x1, std::floor(middle + half - 0.5) + 1.0);
     return first < last ? std::pair(static_cast<int>(first), static_cast<int>(last)) : std::pair(0, 0);
+}
+
+// The detector's point of a picture's place, from the source: origin + x right + y down, x and y in pixels.
+struct PixelRays {
+    Vec3 origin, right, down;
+    explicit PixelRays(const Projection& projection)
+        : origin(projection.to_detector(0, 0)),
+          right(projection.to_detector(1, 0) - origin),
+          down(projection.to_detector(0, 1) - origin) {}
+};
+
+// Lengths within the piece on side x side rays through the pixel, added up.
+double sum_of_samples(const ChordPiece& piece, const Prepared& prepared, const PixelRays& rays, int x, int y,
+                      int side) {
+    const double spacing = 1.0 / side;
+    const Vec3 across = spacing * rays.right, along = spacing * rays.down;
+    Vec3 row = rays.origin + (x + 0.5 * spacing) * rays.right + (y + 0.5 * spacing) * rays.down;
+    const bool with_balls = piece.ball_a || piece.ball_b;
+    double sum = 0;
+    for (int line = 0; line < side; ++line, row += along) {
+        Vec3 d = row;
+        for (int column = 0; column < side; ++column, d += across) {
+            const RayProducts products = prepared.products(d);
+            const double length = prepared.length(products);
+            if (length > 0) sum += length * std::sqrt(products.squared);
+            if (with_balls) sum += balls(piece, piece.a + prepared.offset, d / std::sqrt(products.squared));
+        }
+    }
+    return sum;
 }
 
 }  // namespace
@@ -187,10 +235,8 @@ void append_pieces(const FrameDevice& device, const std::vector<std::uint8_t>& m
 }
 
 double chord(const ChordPiece& piece, const Vec3& origin, const Vec3& direction) {
-    const Vec3 axis = (piece.b - piece.a).normalized();
-    const double outer = solid_chord(piece, axis, origin, direction, piece.radius);
-    if (piece.bore <= 0.0 || outer <= 0.0) return outer;
-    return outer - solid_chord(piece, axis, origin, direction, piece.bore);
+    const Prepared prepared(piece, origin);
+    return prepared.length(prepared.products(direction)) + balls(piece, origin, direction);
 }
 
 void draw_devices(const std::vector<ChordPiece>& pieces, int media, const Projection& projection, int samples,
@@ -216,6 +262,7 @@ void draw_devices(const std::vector<ChordPiece>& pieces, int media, const Projec
     };
     std::vector<Row> rows(static_cast<std::size_t>(height));
     const auto per_pixel = static_cast<std::size_t>(media);
+    const PixelRays rays(projection);
     workers.for_ranges(rows.size(), 8, [&](std::size_t begin, std::size_t end) {
         std::vector<double> sums(width * per_pixel);
         std::vector<std::uint8_t> touched(width);
@@ -225,24 +272,15 @@ void draw_devices(const std::vector<ChordPiece>& pieces, int media, const Projec
             std::fill(touched.begin(), touched.end(), std::uint8_t{0});
             for (const std::uint32_t i : pieces_of_row[y]) {
                 const ChordPiece& piece = pieces[i];
-                const Prepared& test = prepared[i];
                 const auto [first, last] = columns_of(boxes[i], static_cast<double>(y) + 0.5);
                 // A thick piece changes little within a pixel.
                 const int side = boxes[i].reach > 4.0 ? std::min(2, samples) : samples;
-                const double share = 1.0 / (side * side);
                 for (int x = first; x < last; ++x) {
                     if (!boxes[i].holds(x + 0.5, static_cast<double>(y) + 0.5)) continue;
-                    double sum = 0;
-                    for (int k = 0; k < side * side; ++k) {
-                        const int column = k % side, line = k / side;
-                        const double px = x + (column + 0.5) / side;
-                        const double py = static_cast<double>(y) + (line + 0.5) / side;
-                        const Vec3 d = projection.to_detector(px, py);
-                        if (test.near_axis(d)) sum += chord(piece, projection.source(), d.normalized());
-                    }
+                    const double sum = sum_of_samples(piece, prepared[i], rays, x, static_cast<int>(y), side);
                     if (sum <= 0) continue;
                     const auto column = static_cast<std::size_t>(x);
-                    sums[column * per_pixel + piece.medium] += sum * share;
+                    sums[column * per_pixel + piece.medium] += sum / (side * side);
                     touched[column] = 1;
                 }
             }
