@@ -1,18 +1,17 @@
 #include "imaging/libav_encoder.h"
 
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 #include <libavutil/opt.h>
-#include <libswscale/swscale.h>
 }
 
 #include <array>
-#include <stdexcept>
 
 #include "core/check.h"
+#include "imaging/libav.h"
 
 namespace cathlab {
+
+using namespace libav;
 
 namespace {
 
@@ -21,33 +20,6 @@ namespace {
 constexpr const char* h264_preset = "superfast";
 constexpr const char* h264_crf = "25";
 constexpr double key_frame_s = 4.0;  // a player jumps to these
-
-struct Deleter {
-    void operator()(AVFormatContext* context) const {
-        avio_closep(&context->pb);
-        avformat_free_context(context);
-    }
-    void operator()(AVCodecContext* context) const { avcodec_free_context(&context); }
-    void operator()(AVFrame* frame) const { av_frame_free(&frame); }
-    void operator()(AVPacket* packet) const { av_packet_free(&packet); }
-    void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
-};
-template <class T>
-using Owned = std::unique_ptr<T, Deleter>;
-
-// A library's error code as an exception in its own words.
-int must(int code, const char* what) {
-    if (code >= 0) return code;
-    std::array<char, AV_ERROR_MAX_STRING_SIZE> words{};
-    av_strerror(code, words.data(), words.size());
-    throw std::runtime_error(std::string(what) + ": " + words.data());
-}
-
-template <class T>
-T* must(T* made, const char* what) {
-    if (made == nullptr) throw std::runtime_error(std::string(what) + ": out of memory");
-    return made;
-}
 
 const AVCodec* find(FilmCodec codec) {
     switch (codec) {

@@ -148,19 +148,6 @@ const std::string& VideoWriter::codec() const {
     return impl_->codec;
 }
 
-VideoFacts read_video_facts(const std::string& path) {
-    cv::VideoCapture capture;
-    if (!fs::is_regular_file(path) || !capture.open(path, cv::CAP_FFMPEG)) {
-        throw UserError("cannot read video '" + path + "'");
-    }
-    VideoFacts facts;
-    facts.width = static_cast<int>(capture.get(cv::CAP_PROP_FRAME_WIDTH));
-    facts.height = static_cast<int>(capture.get(cv::CAP_PROP_FRAME_HEIGHT));
-    facts.fps = capture.get(cv::CAP_PROP_FPS);
-    while (capture.grab()) ++facts.frames;
-    return facts;
-}
-
 Image8 read_video_frame(const std::string& path, std::size_t index) {
     cv::VideoCapture capture;
     if (!fs::is_regular_file(path) || !capture.open(path, cv::CAP_FFMPEG)) {

@@ -38,7 +38,9 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// What a film holds, found by decoding all of it; throws UserError where it cannot be opened.
+/// What a film holds: every picture's data are read from the file, and those that others do not lean on (in an .avi:
+/// all) are decoded.  Throws UserError where it cannot be opened, or one of them is cut short, broken or of another
+/// size.
 struct VideoFacts {
     std::size_t frames = 0;
     int width = 0;

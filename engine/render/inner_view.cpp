@@ -234,7 +234,8 @@ void InnerView::draw(const FrameDescription& frame, int width, int height, Image
     self.program.use();
     const auto matrix = clip_matrix(camera.field_of_view_deg, aspect);
     gl.UniformMatrix4fv(self.program.uniform("u_clip"), 1, GL_FALSE, matrix.data());
-    gl.Uniform1f(self.program.uniform("u_light_range"), static_cast<float>(camera.light_range_mm));
+    gl.Uniform1f(self.program.uniform("u_light_falloff"),
+                 static_cast<float>(3.0 / (camera.light_range_mm * camera.light_range_mm)));
     self.mesh.set_vertices(self.batch.vertices);
     self.mesh.set_indices(self.batch.indices);
     self.mesh.draw();

@@ -94,6 +94,22 @@ TEST_F(Video, AFluoroscopysGreyStaysGreyAndAsBright) {
     EXPECT_LT(cast / (128 * 64), 0.5);
 }
 
+TEST_F(Video, ATornFilmIsFoundOut) {
+    for (const char* name : {"a.mp4", "a.avi"}) {
+        VideoWriter video(file(name), 128, 64, 15.0);
+        for (int i = 0; i < 40; ++i) video.add(moving_square(128, 64, 2 * i));
+        video.close();
+        fs::resize_file(file(name), fs::file_size(file(name)) * 2 / 3);
+        std::size_t found = 0;
+        try {
+            found = read_video_facts(file(name)).frames;
+        } catch (const UserError&) {
+        }
+        EXPECT_LT(found, 40U) << name;
+    }
+    EXPECT_THROW(read_video_facts(file("none.mp4")), UserError);
+}
+
 TEST_F(Video, GivenUpLeavesNothing) {
     auto video = std::make_unique<VideoWriter>(file("a.mp4"), 64, 32, 15.0);
     video->add(moving_square(64, 32, 0));
