@@ -125,11 +125,11 @@ Pose Rail::at(double arc_mm) const {
     return pose;
 }
 
-double Rail::led(double from_mm, double to_mm) const {
-    double sum = 0.0;
-    for (const RailLead& lead : leads)
-        sum += lead.share * std::max(0.0, std::min(to_mm, lead.to_mm) - std::max(from_mm, lead.from_mm));
-    return sum / (to_mm - from_mm);
+double Rail::led(double arc_mm) const {
+    if (lead.empty()) return 0.0;
+    double part = 0.0;
+    const std::size_t i = locate(*this, arc_mm, part);
+    return lead[i] + std::clamp(part, 0.0, 1.0) * (lead[i + 1] - lead[i]);
 }
 
 double rail_support_mm(const RailShape& shape) {
@@ -167,17 +167,18 @@ Rail build_rail(const Pose& mouth, std::span<const Vec3> nodes, std::span<const 
     return rail;
 }
 
-Rail blend(const Rail& from, const Rail& to, double weight) {
-    if (weight <= 0.0) return from;
-    const double reach = std::min(from.length(), to.length());
+Rail blend(const Rail& from, const Rail& to, double share) {
+    if (share >= 1.0 || from.points.empty()) return to;
     Rail out;
-    for (std::size_t i = 0; i < from.points.size() && (from.arc[i] <= reach || i < 2); ++i) {
-        double part = 0.0;
-        const std::size_t j = locate(to, from.arc[i], part);
-        const Vec3 there = to.points[j] + part * (to.points[j + 1] - to.points[j]);
-        out.points.push_back(from.points[i] + weight * (there - from.points[i]));
+    out.points.reserve(to.points.size());
+    out.lead.reserve(to.points.size());
+    for (std::size_t i = 0; i < to.points.size(); ++i) {
+        const double arc = std::min(to.arc[i], from.length());
+        out.points.push_back(to.points[i] + (1.0 - share) * (from.point(arc) - to.point(arc)));
+        const double lead = to.lead.empty() ? 0.0 : to.lead[i];
+        out.lead.push_back(lead + (1.0 - share) * (from.led(to.arc[i]) - lead));
     }
-    complete(out, from.side.front());
+    complete(out, to.side.front());
     return out;
 }
 

@@ -8,26 +8,22 @@
 
 namespace cathlab {
 
-/// A stretch of the rail on which a guidewire inside leads the steerable part.
-struct RailLead {
-    double from_mm = 0.0, to_mm = 0.0;  ///< arc lengths
-    double share = 0.0;                 ///< 0 = the segments alone decide, 1 = they follow the rail
-};
-
 /// A polyline with arc length and rotation-minimising frames.  Arc 0 = the sheath's mouth.
 struct Rail {
-    std::vector<Vec3> points;     ///< mm, world
-    std::vector<double> arc;      ///< mm, from the mouth
-    std::vector<Vec3> tangent;    ///< unit
-    std::vector<Vec3> side;       ///< unit, square to the tangent: the frame's x axis
-    std::vector<RailLead> leads;  ///< apart from each other; elsewhere the share is 0
+    std::vector<Vec3> points;   ///< mm, world
+    std::vector<double> arc;    ///< mm, from the mouth
+    std::vector<Vec3> tangent;  ///< unit
+    std::vector<Vec3> side;     ///< unit, square to the tangent: the frame's x axis
+    /// How far a guidewire inside leads the steerable part, at each point: 0 = the segments alone decide, 1 = they
+    /// follow the rail.  Empty = nowhere.
+    std::vector<double> lead;
 
     double length() const { return arc.empty() ? 0.0 : arc.back(); }
     Vec3 point(double arc_mm) const;
     /// The frame at an arc length (z forward, x = side).  Beyond either end the rail goes on straight.
     Pose at(double arc_mm) const;
-    /// Mean share between two arc lengths, from < to.
-    double led(double from_mm, double to_mm) const;
+    /// The lead at an arc length, linear between points; beyond either end that of the end.
+    double led(double arc_mm) const;
 };
 
 struct RailShape {
@@ -48,9 +44,10 @@ double rail_support_mm(const RailShape& shape);
 Rail build_rail(const Pose& mouth, std::span<const Vec3> nodes, std::span<const double> radius,
                 const RailShape& shape = {});
 
-/// The rail that lies `weight` of the way from one rail to another, point by point of equal arc length, as far as the
-/// shorter.
-Rail blend(const Rail& from, const Rail& to, double weight);
+/// The rail that lies `share` (0 to 1) of the way from one rail to another, point by point of equal arc length, with
+/// its lead.  It is as long as `to`: beyond the end of `from` it lies as far from `to` as there.  share = 1 is `to` to
+/// the bit.
+Rail blend(const Rail& from, const Rail& to, double share);
 
 /// How much a wire that reaches `wire_mm` beyond the mouth leads a base at `base_mm`: 0 at or behind the base, 1 from
 /// `over_mm` beyond it, smooth between.

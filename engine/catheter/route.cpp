@@ -125,10 +125,10 @@ RouteGraph build_route_graph(const CentrelineGraph& graph, Index entry, const Po
 }
 
 void update_route(const RouteGraph& graph, std::span<const Vec3> positions, std::span<const Vec3> guide,
-                  double base_arc_mm, std::vector<std::int64_t>& route) {
+                  double base_arc_mm, std::vector<std::int64_t>& route, double lookahead_mm) {
     CATHLAB_CHECK(positions.size() == graph.neighbours.size(), "one position a node");
     if (route.size() < 2 || route.front() != graph.entry) route = {graph.entry, graph.first};
-    const double wanted = std::max(base_arc_mm, 0.0) + route_lookahead_mm;
+    const double wanted = std::max(base_arc_mm, 0.0) + lookahead_mm;
     double length = apart(positions[at(route[0])], positions[at(route[1])]);
     std::size_t kept = 2;
     while (kept < route.size() && length < wanted) {

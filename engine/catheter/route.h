@@ -21,10 +21,10 @@ struct RouteGraph {
 /// Throws UserError where the entry has no neighbour.  mouth.z points into the vessel.
 RouteGraph build_route_graph(const CentrelineGraph& graph, Index entry, const Pose& mouth);
 
-/// The route reaches this far beyond the base, so that a change at its end can never move the base.
+/// The route reaches this far beyond the base at least, so that a change at its end can never move the base.
 inline constexpr double route_lookahead_mm = 30.0;
 
-/// Brings the route to the first node that lies route_lookahead_mm or more beyond the base, measured along the nodes'
+/// Brings the route to the first node that lies `lookahead_mm` or more beyond the base, measured along the nodes'
 /// current `positions`.  What lies farther is forgotten: a branch passed on the way back is chosen anew next time.
 /// Where the vessel divides, that branch is taken whose centre-line, a lumen radius and 10 mm from the fork, is nearest
 /// to `guide` (a polyline: the steerable part prolonged beyond its tip, or a wire); so steering picks the branch, and a
@@ -32,7 +32,7 @@ inline constexpr double route_lookahead_mm = 30.0;
 /// by more than 120 degrees, or that leads nowhere but into the route again (the other side of a loop), only where
 /// there is no other.
 void update_route(const RouteGraph& graph, std::span<const Vec3> positions, std::span<const Vec3> guide,
-                  double base_arc_mm, std::vector<std::int64_t>& route);
+                  double base_arc_mm, std::vector<std::int64_t>& route, double lookahead_mm = route_lookahead_mm);
 
 /// Farthest insertion at which a straight catheter still ends inside the graph: length of the route and of the longest
 /// way on from its end (looked for up to `look_mm` beyond the end), mm.

@@ -37,7 +37,7 @@ Vec2 rail_bend(const Rail& rail, double from, double to, double rotation) {
 // Walks on with a bend of its own (radians a mm), of which a guidewire inside leaves a share, and the rest the rail's.
 Pose walk(const Pose& start, const Rail& rail, double from, double to, const Vec2& own, double rotation) {
     const double length = to - from;
-    const double led = rail.led(from, to);
+    const double led = rail.led(0.5 * (from + to));
     Vec2 bend = length * own;
     if (led > 0.0) bend = (1.0 - led) * bend + led * rail_bend(rail, from, to, rotation);
     const double angle = std::sqrt(bend.squaredNorm());

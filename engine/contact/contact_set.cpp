@@ -13,6 +13,9 @@ namespace {
 // A row that is open wider than this does not care where exactly it looks.
 constexpr double near_mm = 0.1;
 
+// What is deeper than this goes out by the shortest way.
+constexpr double deep_mm = 0.25;
+
 // Neighbouring samples that look at the same part of the wall, and the ball that they may fill.
 constexpr std::size_t samples_together = 4;
 constexpr double ball_mm = 12.0;
@@ -126,7 +129,8 @@ ContactSet::Found ContactSet::look(const LumenSurfaceModel& model, const LumenSu
     if (!nearest.found() || nearest.signed_distance > reach || nearest.inward_normal.squaredNorm() < 0.5) return found;
     found.wall[static_cast<std::size_t>(found.count++)] = nearest;
     found.smooth = inward_smooth_normal(model, surface, nearest.triangle, nearest.barycentric);
-    if (found.smooth.dot(nearest.inward_normal) < 0.5) found.smooth = nearest.inward_normal;
+    if (found.smooth.dot(nearest.inward_normal) < 0.5 || sample.radius - nearest.signed_distance > deep_mm)
+        found.smooth = nearest.inward_normal;
     const int most = sample.walls > 0 ? std::min(sample.walls, max_rows_per_sample) : settings_.rows_per_sample;
     if (most < 2) return found;
     for (const SurfacePoint& wall :
@@ -339,14 +343,21 @@ std::vector<double> ContactSet::arcs_at_the_wall(Index device) const {
     return arcs;
 }
 
+bool ContactSet::presses(std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const {
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+        if (rows_[r].multiplier > (samples_now[at(wall_[r].sample)].walls > 0 ? front_mn : force_mn)) return true;
+    return false;
+}
+
 double ContactSet::true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
-                              std::span<const DeviceSample> samples_now, double force_mn) const {
+                              std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const {
     double depth = 0.0;
     Index last = -1;
     for (std::size_t r = 0; r < rows_.size(); ++r) {
-        if (rows_[r].multiplier <= force_mn || wall_[r].sample == last) continue;
+        if (wall_[r].sample == last) continue;
+        const DeviceSample& s = samples_now[at(wall_[r].sample)];
+        if (rows_[r].multiplier <= (s.walls > 0 ? front_mn : force_mn)) continue;
         last = wall_[r].sample;
-        const DeviceSample& s = samples_now[at(last)];
         const SurfacePoint nearest =
             closest(model, surface, s.position, settings_.recovery_mm, memory_.triangle[at(last)]);
         if (nearest.found()) depth = std::max(depth, s.radius - nearest.signed_distance);

@@ -96,10 +96,13 @@ public:
     /// so: its normal and its wall point were true for another place.  Where it is large, detect again.
     double staleness() const;
 
-    /// How deep, mm, >= 0, the samples that carry more than `force_mn` are in the surface as it is now.  Rows hold the
-    /// wall's facets as they lay at detect; under a tip that presses hard they turn.  Where it is large, detect again.
+    /// How deep, mm, >= 0, the samples that carry more than `force_mn`, those of a front end (DeviceSample::walls) more
+    /// than `front_mn`, are in the surface as it is now.  Rows hold the wall's facets as they lay at detect; under a tip
+    /// that presses they turn.  Where it is large, detect again.
     double true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
-                      std::span<const DeviceSample> samples_now, double force_mn) const;
+                      std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const;
+    /// Whether any sample carries so much.
+    bool presses(std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const;
 
     /// The rows of one device for the chain solve, contiguous, ascending from the tip; multipliers are in and out.
     std::span<ChainRow> chain_rows(Index device);

@@ -85,6 +85,7 @@ Shared<SoftBodyModel> build_wall(const SceneSpec& spec, AnatomyModel& anatomy) {
     parameters.damping_per_s = spec.wall.damping_per_s;
     parameters.surrounding_kpa_per_mm = spec.wall.surrounding_kpa_per_mm;
     parameters.surrounding_kpa_s_per_mm = spec.wall.surrounding_kpa_s_per_mm;
+    parameters.max_speed_mm_s = spec.wall.max_speed_mm_s;
     parameters.precision = spec.wall.precision == "double" ? Precision::double_ : Precision::float_;
     parameters.reference_spacing_mm = spec.wall.particle_spacing_mm;
     override_regions(spec, anatomy, parameters);

@@ -71,6 +71,8 @@ Table<SceneWall> wall_table() {
                 "stiffness of the tissue around the vessels, an elastic foundation; 0 = nothing around them")
         .number("surrounding_kpa_s_per_mm", &SceneWall::surrounding_kpa_s_per_mm, "kPa s/mm", {0, 10},
                 "damping of that tissue")
+        .number("max_speed_mm_s", &SceneWall::max_speed_mm_s, "mm/s", {1, 1e6},
+                "no particle goes faster: a wall that slips off a device does not snap back at once")
         .choice("precision", &SceneWall::precision, {"float", "double"},
                 "of the cluster fits; positions and forces are double in either")
         .number("damping_per_s", &SceneWall::damping_per_s, "1/s", {0, 1000},

@@ -41,6 +41,7 @@ void check(const WallParameters& p) {
     require(p.surrounding_kpa_s_per_mm >= 0.0 && std::isfinite(p.surrounding_kpa_s_per_mm), "surrounding_kpa_s_per_mm",
             p.surrounding_kpa_s_per_mm, "0 or above");
     require(p.damping_per_s >= 0.0 && std::isfinite(p.damping_per_s), "damping_per_s", p.damping_per_s, "0 or above");
+    require(p.max_speed_mm_s > 0.0, "max_speed_mm_s", p.max_speed_mm_s, "above 0");
     for (const RegionWall& own : p.regions) {
         if (own.cluster_spacing_mm) check_positive("cluster_spacing_mm of a region", *own.cluster_spacing_mm);
         if (own.cluster_radius_mm) check_positive("cluster_radius_mm of a region", *own.cluster_radius_mm);
@@ -98,6 +99,7 @@ SoftBodyModel build_soft_body(const WallSample& sample, const WallParameters& pa
     model.region = sample.region;
     model.links = sample.links;
     model.damping_per_s = parameters.damping_per_s;
+    model.max_speed_mm_s = parameters.max_speed_mm_s;
     model.precision = parameters.precision;
     for (std::size_t i = 0; i < n; ++i) {
         double density = parameters.density_kg_mm3, t_c = parameters.cluster_stiffness;

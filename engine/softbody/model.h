@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -46,6 +47,8 @@ struct WallParameters {
     /// per mm/s of speed, both 0 = nothing around it (a bench phantom).  The foundation stands where the supports of
     /// fixed particles stand.
     double surrounding_kpa_per_mm = 0.0, surrounding_kpa_s_per_mm = 0.0;
+    /// No particle goes faster than this: blood and tissue round a thin wall let none snap back at once, > 0.
+    double max_speed_mm_s = std::numeric_limits<double>::infinity();
     double reference_spacing_mm =
         2.1;  ///< where particles are denser than this, s_c and r_c shrink with their distance, so
               ///< that a cluster of a coronary holds no more particles than one of the aorta
@@ -83,6 +86,7 @@ struct SoftBodyModel {
     std::vector<Index> region;                   ///< (n)
     std::vector<std::pair<Index, Index>> links;  ///< a < b
     double damping_per_s = 0.0;
+    double max_speed_mm_s = std::numeric_limits<double>::infinity();
 
     std::vector<Index> cluster_start;  ///< (n + 1) the clusters of particle i: cluster[cluster_start[i] .. [i+1])
     std::vector<Index> cluster;        ///< lane index = 8 group + lane, ascending for each particle

@@ -72,14 +72,22 @@ void gather(const SoftBodyModel& model, SoftBodyScratch& scratch, const kernel::
                scratch.goal.front().data(), begin, end);
 }
 
+void limit_way(const Vec3& start, double farthest, Vec3& x) {
+    const Vec3 way = x - start;
+    const double squared = way.squaredNorm();
+    if (squared > farthest * farthest) x = start + (farthest / std::sqrt(squared)) * way;
+}
+
 void apply_to(const SoftBodyModel& model, SoftBodyState& state, const SoftBodyScratch& scratch, double h,
               std::size_t begin, std::size_t end) {
     const double per_h2 = 1.0 / h / h;
+    const double farthest = model.max_speed_mm_s * h;
     for (std::size_t i = begin; i < end; ++i) {
         if (model.fixed[i]) continue;
         const double inertia = model.mass[i] * per_h2;
         state.x[i] = scratch.compliance[i] * (inertia * scratch.predicted[i] +
                                               stiffness(model, scratch, i) * scratch.goal[i] + scratch.force[i]);
+        limit_way(scratch.start[i], farthest, state.x[i]);
     }
 }
 
@@ -261,6 +269,12 @@ void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& sc
                   "predict and solve_goals come before apply");
     workers.for_ranges(model.size(), particle_grain,
                        [&](std::size_t begin, std::size_t end) { apply_to(model, state, scratch, h, begin, end); });
+}
+
+void limit_speed(const SoftBodyModel& model, SoftBodyState& state, const SoftBodyScratch& scratch, double h,
+                 std::span<const Index> particles) {
+    for (const Index i : particles)
+        if (!model.fixed[at(i)]) limit_way(scratch.start[at(i)], model.max_speed_mm_s * h, state.x[at(i)]);
 }
 
 WallPart part_around(const SoftBodyModel& model, std::span<const Index> touched) {

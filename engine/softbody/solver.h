@@ -63,7 +63,7 @@ void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& 
 /// Fits every cluster to state.x (weights m_i / n_i) and writes scratch.goal.
 void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers);
 
-/// state.x from x~, goals and scratch.force.
+/// state.x from x~, goals and scratch.force, no further from the substep's start than model.max_speed_mm_s lets it.
 void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
            const Workers& workers);
 
@@ -87,6 +87,10 @@ void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScrat
                  const Workers& workers);
 void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h, const WallPart& part,
            const Workers& workers);
+
+/// Brings particles that others have moved back to within what max_speed_mm_s lets them go.  Repeats are possible.
+void limit_speed(const SoftBodyModel& model, SoftBodyState& state, const SoftBodyScratch& scratch, double h,
+                 std::span<const Index> particles);
 
 /// v = (x - x_start) / h, drawn towards the velocity of the goal, (g - g_last) / h, at the model's damping rate: a
 /// rigid motion carries its goals along and is not slowed.  A free body (no fixed particle) gets the linear and angular

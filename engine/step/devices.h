@@ -1,10 +1,9 @@
-// The devices' side of a substep: how commands are taken and where the contact samples lie.
+// The devices' side of a substep: what the wire's drive takes and where the contact samples of both devices lie.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "contact/inside_catheter.h"
 #include "core/input.h"
 #include "step/parts.h"
 
@@ -24,19 +23,10 @@ struct DeviceSamples {
 /// pulling the other way is always allowed.
 double drive_fraction(const Rod& wire, const WireDrive& drive, const StepSettings& settings, double advance_mm);
 
-/// Takes of the catheter's command what the wall allows and moves it.  Returns the refused part, 0 to 1.
-double move_catheter(Parts& parts, const Input& input, double h);
-
-/// Brings the rail and the catheter's shape to where the wall is now, without a command.
-void settle_catheter(Parts& parts);
-
 /// Lists the samples as they are before the prediction (position = previous).
 void begin_samples(const Parts& parts, const CatheterShape& catheter_before, DeviceSamples& samples);
 
 /// Brings positions, arms and rotations of the wire's samples to where the chain is now.
 void refresh_samples(const Parts& parts, DeviceSamples& samples);
-
-/// The bore of the catheter for the wire inside it; empty where there is no catheter.
-CatheterBore catheter_bore(const Parts& parts);
 
 }  // namespace cathlab

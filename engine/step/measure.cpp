@@ -5,6 +5,7 @@
 
 #include "core/units.h"
 #include "softbody/observe.h"
+#include "step/catheter_drive.h"
 #include "step/devices.h"
 
 namespace cathlab {

@@ -80,12 +80,17 @@ struct CatheterRoute {
     /// over it; a rail that moved with each dent in the wall would carry the wire that makes the dent along, and run
     /// away with it.
     std::vector<Vec3> path;
-    CatheterShape shape;  ///< where it lies now; follows from state and wall
+    Rail laid;            ///< where its shaft lies: on its way to what route and wire ask for
+    CatheterShape shape;  ///< where it lies now; follows from its state and `laid`
     /// What follows from the route alone, kept while that stays the same.
     std::vector<std::int64_t> rail_route;
     Rail rail;
     double insertion_limit_mm = 0.0;
 };
+inline void visit(Archive& archive, CatheterRoute& route) {
+    archive.field("laid", route.laid.points);
+    archive.field("lead", route.laid.lead);
+}
 
 /// Component of the heart: forces between cylinder and wall, kept from substep to substep as a warm start.
 struct HeartContact {

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "step/devices.h"
+#include "step/catheter_drive.h"
 #include "step/parts.h"
 #include "step/step.h"
 
@@ -75,8 +75,6 @@ void prepare(World& world) {
         for (const CentrelineNode& node : (*anatomy)->centreline.nodes) route.path.push_back(node.position);
         world.add(catheter, std::move(route));
         Parts parts = find_parts(world);
-        update_route(parts.catheter_route->graph, parts.catheter_route->path, {},
-                     base_arc_mm(*parts.catheter, *parts.catheter_state), parts.catheter_state->route);
         settle_catheter(parts);
     }
 }

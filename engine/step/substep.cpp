@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/push_out.h"
 #include "core/units.h"
+#include "step/catheter_drive.h"
 #include "step/devices.h"
 #include "step/wall_forces.h"
 #include "step/wire_weight.h"
@@ -24,10 +26,14 @@ constexpr double wire_depth_mm = 0.1;
 constexpr double front_mm = 3.0;
 // A pass is repeated, with contacts looked for anew, while device and wall slid past each other by more than this.
 constexpr double stale_mm = 0.2;
-// ... or while a sample that presses with more than so much is deeper in the wall, as it then lies, than its rows say.
+// ... or while a sample that presses with more than so much, at a front end that presses at all, is deeper in the wall,
+// as it then lies, than its rows say.
 constexpr double pressed_mn = 100.0;
+constexpr double front_pressed_mn = 2.0;
 constexpr double pressed_depth_mm = 0.25;
 constexpr int extra_passes = 3;
+// What is deeper than that after the last of them is taken out to so much.
+constexpr double pushed_out_mm = 0.2;
 // Within a step the lumen surface follows the wall up to this far from the devices.
 constexpr double surface_reach_mm = 4.5;
 
@@ -67,11 +73,9 @@ void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<Ch
 
 // How deep the samples that press hard are in the wall as the last pass left it.
 double pressed_depth(Parts& p, const DeviceSamples& samples, const StepSums& sums) {
-    const auto rows = p.contacts->rows();
-    if (std::none_of(rows.begin(), rows.end(), [](const ChainRow& row) { return row.multiplier > pressed_mn; }))
-        return 0.0;
+    if (!p.contacts->presses(samples.list, pressed_mn, front_pressed_mn)) return 0.0;
     update(*p.surface, p.wall_state->x, *sums.surface_near, *p.surface_state, p.world->workers());
-    return p.contacts->true_depth(*p.surface, *p.surface_state, samples.list, pressed_mn);
+    return p.contacts->true_depth(*p.surface, *p.surface_state, samples.list, pressed_mn, front_pressed_mn);
 }
 
 // Rows for the samples where they are now, against the wall at `particles`.  The surface follows as a whole once a
@@ -172,7 +176,7 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
     std::vector<ChainRow> rows;
     std::vector<ChainRow> bore_rows;
     int passes = p.settings->iterations;
-    bool looked_again = false;
+    bool looked_again = false, too_deep = false;
     WallPart touched;  // by devices and heart: passes after the first look at the wall around them alone
     for (int pass = 0; pass < passes; ++pass) {
         p.stage("softbody");
@@ -196,6 +200,7 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
             solve_wire(p, samples, h, rows, bore_rows);
             p.stage("contact");
             p.contacts->yield(wire_device, before, state.x, scratch.compliance);
+            limit_speed(wall, state, scratch, h, p.contacts->particles());
             refresh_samples(p, samples);
             p.contacts->refresh(samples.list, state.x);
         }
@@ -216,8 +221,9 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
         p.stage("contact");
         refresh_samples(p, samples);
         p.contacts->refresh(samples.list, state.x);
-        if (pass + 1 == passes && passes < p.settings->iterations + extra_passes &&
-            (p.contacts->staleness() > stale_mm || pressed_depth(p, samples, sums) > pressed_depth_mm)) {
+        if (pass + 1 < passes) continue;
+        too_deep = pressed_depth(p, samples, sums) > pressed_depth_mm;
+        if (passes < p.settings->iterations + extra_passes && (too_deep || p.contacts->staleness() > stale_mm)) {
             find_contacts(p, samples, state.x, sums);
             looked_again = true;
             ++passes;
@@ -226,6 +232,12 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
 
     // 4. Velocities from positions, forces from multipliers.
     finish(wall, state, scratch, h, workers);
+    if (too_deep) {
+        p.stage("contact");
+        push_out(*p.surface, *sums.surface_near, *p.contacts, samples.list, pushed_out_mm, scratch.compliance, state.x,
+                 *p.surface_state, workers);
+        p.contacts->refresh(samples.list, state.x);
+    }
     p.stage("rod");
     if (p.wire) {
         p.wire->finish(h);

@@ -9,24 +9,12 @@
 #include "adult.h"
 #include "anatomy/implicit_tree.h"
 #include "anatomy/remesh.h"
+#include "core/winding.h"
 
 namespace cathlab {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-
-/// Signed solid angle sum over 4 pi: 1 inside a closed outward surface, 0 outside.
-double winding(const TriMesh& mesh, const Vec3& p) {
-    double sum = 0.0;
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3 a = mesh.vertices[static_cast<std::size_t>(t[0])] - p;
-        const Vec3 b = mesh.vertices[static_cast<std::size_t>(t[1])] - p;
-        const Vec3 c = mesh.vertices[static_cast<std::size_t>(t[2])] - p;
-        const double la = a.norm(), lb = b.norm(), lc = c.norm();
-        sum += 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-    }
-    return sum / (4.0 * pi);
-}
 
 double nearest_vertex(const TriMesh& mesh, const Vec3& p) {
     double best = 1e300;

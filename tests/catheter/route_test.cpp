@@ -203,5 +203,24 @@ TEST(CatheterRail, AWireThatReachesFartherIsFollowed) {
     EXPECT_EQ(wire_lead(70.0, 41.0), 1.0);
     EXPECT_NEAR(blend(a, b, 1.0).at(60.0).position.x(), b.at(60.0).position.x(), 0.01);
     EXPECT_NEAR(blend(a, b, 0.5).at(60.0).position.x(), 0.5 * b.at(60.0).position.x(), 0.01);
-    EXPECT_EQ(blend(a, b, 0.0).points, a.points);
+    EXPECT_EQ(blend(a, b, 1.0).points, b.points);
+}
+
+TEST(CatheterRail, ABlendIsAsLongAsWhereItGoesAndCarriesTheLead) {
+    std::vector<Vec3> nodes;
+    for (int i = 0; i <= 30; ++i) nodes.emplace_back(3.0, 0.0, 2.0 * i);
+    Pose aside;
+    aside.position = Vec3(3.0, 0.0, 0.0);
+    Rail shorter = build_rail(aside, nodes, {});  // 60 mm long, 3 mm beside the other
+    shorter.lead.assign(shorter.points.size(), 0.8);
+    nodes.clear();
+    for (int i = 0; i <= 50; ++i) nodes.emplace_back(0.0, 0.0, 2.0 * i);
+    const Rail longer = build_rail(Pose{}, nodes, {});
+    const Rail half = blend(shorter, longer, 0.5);
+    EXPECT_NEAR(half.length(), 100.0, 1e-6);
+    for (const double arc : {0.0, 30.0, 60.0, 95.0}) {
+        EXPECT_NEAR((half.point(arc) - Vec3(1.5, 0.0, arc)).norm(), 0.0, 1e-6) << arc;
+        EXPECT_NEAR(half.led(arc), 0.4, 1e-9) << arc;
+    }
+    EXPECT_NEAR(blend(longer, shorter, 0.25).length(), 60.0, 1e-6);
 }

@@ -148,7 +148,7 @@ TEST(CatheterShape, AWireInsideAndTheBendsShareTheCurvatureByTheirStiffnesses) {
     const CatheterState straight = initial_state(spec, 200.0);
     EXPECT_NEAR(turned(shape(spec, straight, rail)), 0.0, 1e-9);  // no wire: straight on
     for (const double share : {0.25, 0.9, 1.0}) {
-        rail.leads = {{0.0, 300.0, share}};
+        rail.lead.assign(rail.points.size(), share);
         EXPECT_NEAR(turned(shape(spec, straight, rail)), share * steerable / radius, 0.01 * steerable / radius);
         // Bent against the rail: what is left of its own bend comes off.
         const CatheterState back = bent(spec, 200.0, 10.0, 20.0, units::pi);
@@ -164,7 +164,7 @@ TEST(CatheterShape, AWireThatReachesHalfWayLeadsThatHalf) {
     const CatheterSpec spec;
     const double radius = 100.0, steerable = spec.steerable_length_mm(), base = 200.0 - steerable;
     Rail rail = round_rail(radius);
-    rail.leads = {{0.0, base + 0.5 * steerable, 1.0}};
+    for (const double arc : rail.arc) rail.lead.push_back(arc < base + 0.5 * steerable ? 1.0 : 0.0);
     EXPECT_NEAR(turned(shape(spec, initial_state(spec, 200.0), rail)), 0.5 * steerable / radius,
                 0.01 * steerable / radius);
 }

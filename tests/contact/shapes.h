@@ -8,6 +8,7 @@
 #include "contact/closest_point.h"
 #include "core/check.h"
 #include "core/random.h"
+#include "core/winding.h"
 
 namespace cathlab::test {
 
@@ -135,20 +136,16 @@ inline double slow_distance(const Vec3& p, const Vec3& a, const Vec3& b, const V
     return best;
 }
 
-/// Distance by brute force, side by the winding number (sum of solid angles [oosterom1983]).
+/// Distance by brute force, side by the winding number.
 inline double slow_signed_distance(const Surface& s, const Vec3& p) {
     double nearest = 1e300;
-    double angle = 0.0;
     for (const Triangle& t : s.model.triangles) {
         const Vec3& a = s.state.vertices[static_cast<std::size_t>(t[0])];
         const Vec3& b = s.state.vertices[static_cast<std::size_t>(t[1])];
         const Vec3& c = s.state.vertices[static_cast<std::size_t>(t[2])];
         nearest = std::min(nearest, slow_distance(p, a, b, c));
-        const Vec3 u = a - p, v = b - p, w = c - p;
-        const double lu = u.norm(), lv = v.norm(), lw = w.norm();
-        angle += 2.0 * std::atan2(u.dot(v.cross(w)), lu * lv * lw + u.dot(v) * lw + v.dot(w) * lu + w.dot(u) * lv);
     }
-    return angle > 2.0 * std::numbers::pi ? nearest : -nearest;
+    return winding(s.model.triangles, s.state.vertices, p) > 0.5 ? nearest : -nearest;
 }
 
 }  // namespace cathlab::test

@@ -5,6 +5,7 @@
 #include "contact/contact_set.h"
 #include "contact/device_samples.h"
 #include "contact/penetration.h"
+#include "contact/push_out.h"
 #include "core/deterministic_math.h"
 #include "shapes.h"
 #include "softbody/solver.h"
@@ -208,6 +209,45 @@ TEST(SoftWall, AWireInTheWallIsTheSameOnAnyNumberOfThreads) {
     }
     for (std::size_t i = 0; i < one.wall.state.x.size(); ++i) ASSERT_EQ(one.wall.state.x[i], three.wall.state.x[i]);
     ASSERT_EQ(one.rod.tip(), three.rod.tip());
+}
+
+TEST(PushOut, WhatIsTooDeepIsTakenOutByMovingTheWallAlone) {
+    SoftWall wall(5.0, 40.0);
+    wall.predict_all();
+    // One sample beyond the wall, one a little in it, one that touches nothing.
+    std::vector<DeviceSample> samples(3);
+    samples[0].position = Vec3(0.0, -5.6, 20.0);
+    samples[1].position = Vec3(4.3, 0.0, 12.0);
+    samples[2].position = Vec3(0.0, 0.0, 30.0);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        samples[i].previous = 0.5 * samples[i].position + Vec3(0.0, 0.0, 0.5 * samples[i].position.z());
+        samples[i].radius = 0.8;
+        samples[i].arc_mm = 10.0 * static_cast<double>(i);
+    }
+    ContactSet contacts;
+    wall.detect(contacts, samples);
+    ASSERT_GE(contacts.rows().size(), 2u);
+    const std::vector<ChainRow> before(contacts.rows().begin(), contacts.rows().end());
+    const std::vector<Vec3> velocity = wall.state.v;
+    std::vector<Vec3> places;
+    for (const DeviceSample& s : samples) places.push_back(s.position);
+    const TreePart near = part_near(wall.surface.tree, wall.surface_state.boxes, places, 4.5);
+    const double left = push_out(wall.surface, near, contacts, samples, 0.2, wall.scratch.compliance, wall.state.x,
+                                 wall.surface_state, wall.workers);
+    EXPECT_LT(left, 0.22);
+    update(wall.surface, wall.state.x, wall.surface_state, wall.workers);
+    const PenetrationReport report = penetration_report(wall.surface, wall.surface_state, samples, wall.workers);
+    EXPECT_LT(report.deepest_mm, 0.22);
+    EXPECT_EQ(report.outside, 0);
+    for (std::size_t r = 0; r < before.size(); ++r) EXPECT_EQ(contacts.rows()[r].multiplier, before[r].multiplier);
+    EXPECT_EQ(wall.state.v, velocity);
+    for (std::size_t i = 0; i < wall.model.size(); ++i) {
+        const Vec3 moved = wall.state.x[i] - wall.model.rest[i];
+        if (wall.model.fixed[i] || std::fabs(wall.model.rest[i].z() - 30.0) < 3.0) {
+            EXPECT_EQ(moved.norm(), 0.0) << i;
+        }
+        EXPECT_LT(moved.norm(), 4.0) << i;
+    }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "anatomy/build.h"
 #include "anatomy/remesh.h"
+#include "core/winding.h"
 #include "scene/anatomy_file.h"
 
 namespace cathlab {
@@ -36,21 +37,6 @@ const Landmark& landmark(const std::string& name) {
         if (l.name == name) return l;
     }
     throw std::runtime_error("no landmark " + name);
-}
-
-/// Sum of solid angles over 4 pi: 1 inside a closed outward surface.
-double winding(const TriMesh& mesh, const Vec3& p) {
-    double sum = 0.0;
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3 a = mesh.vertices[static_cast<std::size_t>(t[0])] - p;
-        const Vec3 b = mesh.vertices[static_cast<std::size_t>(t[1])] - p;
-        const Vec3 c = mesh.vertices[static_cast<std::size_t>(t[2])] - p;
-        const double la = a.norm();
-        const double lb = b.norm();
-        const double lc = c.norm();
-        sum += 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-    }
-    return sum / (4.0 * pi);
 }
 
 bool inside(const TriMesh& mesh, const Vec3& p) {

@@ -52,6 +52,30 @@ TEST(Solver, AFreeFallIsUntouched) {
         ASSERT_NEAR((wall.state.x[i] - wall.model.rest[i] - Vec3(0, 0, fallen)).norm(), 0.0, 1e-8);
 }
 
+TEST(Solver, NoParticleGoesFasterThanItsLimit) {
+    WallParameters parameters;
+    parameters.max_speed_mm_s = 150.0;
+    Wall wall(rig::free_tube(parameters));
+    const double h = 0.005;
+    for (std::size_t i = 0; i < wall.model.size(); i += 7)
+        wall.state.x[i] += Vec3(3.0, 0.0, 0.0);  // dents that snap back
+    double farthest = 0.0;
+    for (int k = 0; k < 5; ++k) {
+        const std::vector<Vec3> before = wall.state.x;
+        wall.step(h, 2);
+        for (std::size_t i = 0; i < wall.model.size(); ++i)
+            farthest = std::max(farthest, (wall.state.x[i] - before[i]).norm());
+    }
+    EXPECT_LE(farthest, 150.0 * h * (1.0 + 1e-12));
+    EXPECT_GT(farthest, 140.0 * h);
+    // Others may move particles between passes: the same limit, counted from the substep's start.
+    predict(wall.model, wall.state, wall.scratch, h, {}, {}, wall.workers);
+    wall.state.x[7] = wall.scratch.start[7] + Vec3(0.0, 5.0, 0.0);
+    const std::vector<Index> moved{7, 7};
+    limit_speed(wall.model, wall.state, wall.scratch, h, moved);
+    EXPECT_NEAR((wall.state.x[7] - wall.scratch.start[7] - Vec3(0.0, 150.0 * h, 0.0)).norm(), 0.0, 1e-12);
+}
+
 TEST(Solver, ARigidRotationIsUntouchedEvenByDamping) {
     WallParameters parameters;
     parameters.damping_per_s = 50.0;

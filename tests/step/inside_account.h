@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "contact/closest_point.h"
+#include "core/winding.h"
 #include "step/parts.h"
 
 namespace cathlab {
@@ -64,8 +65,9 @@ struct InsideAccount {
 };
 
 /// Skins the whole surface to the particles as they are now and looks for the closest of all its points to every device
-/// point, without a hint.  Distance changes no faster than the point moves, so the last point's distance and the way
-/// from there bound the search: it stays exact.
+/// point, without a hint.  The side comes from that point's normal; where it says outside, and at either tip whatever
+/// it says, the winding number decides: a vessel pressed into folds can turn a facet inside out.  Distance changes no
+/// faster than the point moves, so the last point's distance and the way from there bound the search: it stays exact.
 inline InsideAccount inside_account(const Parts& parts, LumenSurfaceState& surface) {
     update(*parts.surface, parts.wall_state->x, surface, parts.world->workers());
     InsideAccount account;
@@ -81,14 +83,19 @@ inline InsideAccount inside_account(const Parts& parts, LumenSurfaceState& surfa
             ADD_FAILURE() << "no wall within " << reach << " mm of a device";
             return account;
         }
-        const double depth = point.radius - wall.signed_distance;
+        double distance = wall.signed_distance;
+        if (distance < 0.0 || !last || last->device != point.device) {
+            const bool inside = winding(parts.surface->triangles, surface.vertices, point.position) > 0.5;
+            distance = inside ? std::fabs(distance) : -std::fabs(distance);
+        }
+        const double depth = point.radius - distance;
         if (depth > account.deepest_mm) {
             account.deepest_mm = depth;
             account.deepest = point;
         }
-        account.outside += wall.signed_distance < -point.radius ? 1 : 0;
+        account.outside += distance < -point.radius ? 1 : 0;
         last = &point;
-        last_distance = wall.signed_distance;
+        last_distance = distance;
     }
     account.points = points.size();
     return account;

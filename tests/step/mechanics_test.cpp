@@ -210,5 +210,37 @@ TEST(Heart, CarriesTheAnnulusByItsDisplacement) {
     EXPECT_GT(most, 4.0);
 }
 
+/// Farthest way of a sample of the catheter in one step while its command stays and the wire goes, mm.
+double thrown(RigRun& run, double wire_speed, int steps) {
+    double farthest = 0.0;
+    for (int k = 0; k < steps; ++k) {
+        const CatheterShape before = run.parts.catheter_route->shape;
+        Input input = push(wire_speed);
+        input.proximal_bend = run.channels.catheter_proximal_bend_deg;
+        input.distal_bend = run.channels.catheter_distal_bend_deg;
+        run.step(input);
+        const CatheterShape& after = run.parts.catheter_route->shape;
+        for (std::size_t i = 0; i < std::min(before.points.size(), after.points.size()); ++i)
+            farthest = std::max(farthest, (after.points[i] - before.points[i]).norm());
+    }
+    return farthest;
+}
+
+TEST(Catheter, AWireThatComesAndGoesInsideMovesItNoFasterThanContactCanFollow) {
+    for (const char* follow : {"vessel", "wire"}) {
+        SceneSpec spec = rig_spec("fork");
+        spec.catheter.follow = follow;
+        RigRun run(spec, "fork");
+        Input bend = push(80.0, 1.0);
+        bend.proximal_bend = 30.0;
+        bend.distal_bend = 40.0;
+        run.step(bend, 60);
+        const double limit = 4.0 * 0.5 + 1e-9;  // mm a step: 0.5 mm a substep
+        EXPECT_LT(thrown(run, 100.0, 60), limit) << follow;
+        EXPECT_LT(thrown(run, -100.0, 120), limit) << follow;
+        EXPECT_EQ(run.channels.outside_count, 0.0);
+    }
+}
+
 }  // namespace
 }  // namespace cathlab

@@ -17,9 +17,9 @@ struct ExpectedHash {
     std::uint64_t hash;
 };
 constexpr std::array<ExpectedHash, 3> expected_hashes{{
-    {"tube_wire", 0x63a600188d20dfb6},
-    {"tube_catheter", 0x98c3b239c4a437dd},
-    {"fork", 0x25c129464fa7eba5},
+    {"tube_wire", 0xd4d9ca0470f7b77f},
+    {"tube_catheter", 0xca7360f4ed7f1f67},
+    {"fork", 0x5441a720fa93b320},
 }};
 
 constexpr int steps = 150;

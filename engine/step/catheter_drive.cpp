@@ -1,0 +1,259 @@
+#include "step/catheter_drive.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "catheter/give_way.h"
+#include "core/units.h"
+
+namespace cathlab {
+namespace {
+
+// From this share of its force limit on the catheter gives way, at the limit at full speed.
+constexpr double yielding_from = 0.75;
+// How far a command may drive the catheter into the wall in one substep, beyond what the wall has yielded: the wall is
+// then never more than this behind, and the device's own limit (0.5 mm) is kept with a margin for its folds.
+constexpr double depth_a_substep_mm = 0.15;
+// How far beyond its steerable part the catheter's way on is looked at, for where the vessels end.
+constexpr double beyond_route_mm = 60.0;
+// Over so much of its way out of the sheath the base is handed from the sheath's direction to the wire's: a wire just
+// beyond the mouth is bent by the catheter round it and could not lead that.
+constexpr double handing_over_mm = 20.0;
+// The shaft goes over to the rail that route and wire ask for by no more than this in a substep, at the wall and free.
+constexpr double shift_at_wall_mm = 0.1;
+constexpr double shift_free_mm = 0.5;
+
+// Two elastic rods in one another take the curvatures that either would have alone in the ratio of their stiffnesses: a
+// stiff guidewire inside leads the steerable part along the vessel and is hardly bent by it.
+std::vector<double> led_by_wire(const Parts& p, const std::vector<double>& arcs) {
+    if (!p.wire || p.catheter->inner_diameter_mm <= 0.0) return {};
+    std::vector<double> lead;
+    lead.reserve(arcs.size());
+    const double front = p.wire->insertion_mm();
+    for (const double arc : arcs) {
+        const WireSection* section = nullptr;
+        double end = 0.0;  // of a section, mm from the wire's tip
+        for (const WireSection& s : p.wire->spec().sections) {
+            section = &s;
+            end += s.length_mm;
+            if (front - arc < end) break;
+        }
+        const double ei = section->bending_stiffness_n_mm2;
+        lead.push_back(arc < front ? ei / (ei + p.catheter->bending_stiffness_n_mm2) : 0.0);
+    }
+    return lead;
+}
+
+// The wire's line from the sheath's mouth to its tip.
+std::vector<Vec3> wire_line(const Parts& p) {
+    const std::vector<Vec3> line = p.wire->polyline();
+    constexpr double clear_mm = 2.0;  // of the mouth
+    double arc = 0.0;
+    std::size_t last = 0;
+    for (; last + 1 < line.size() && arc < p.wire->insertion_mm() - clear_mm; ++last)
+        arc += std::sqrt((line[last + 1] - line[last]).squaredNorm());
+    std::vector<Vec3> nodes{p.mount->mouth.position};
+    for (std::size_t i = last; i-- > 0;) nodes.push_back(line[i]);
+    return nodes;
+}
+
+// Which vessels the shaft takes: a wire that is ahead of the tip has chosen them already, otherwise steering does.
+void choose_route(Parts& p) {
+    CatheterState& state = *p.catheter_state;
+    const CatheterRoute& route = *p.catheter_route;
+    const double base = base_arc_mm(*p.catheter, state), steerable = p.catheter->steerable_length_mm();
+    std::vector<Vec3> guide;
+    if (!route.shape.points.empty()) guide = steering_guide(*p.catheter, route.shape);
+    double ahead = route_lookahead_mm;
+    if (p.wire && p.catheter->inner_diameter_mm > 0.0) {
+        // The rail has to lead the whole steerable part, as far as the wire reaches.
+        ahead = std::clamp(p.wire->insertion_mm() - std::max(base, 0.0), ahead, steerable + rail_support_mm({}));
+        if (p.wire->insertion_mm() > state.insertion_mm) {
+            guide = wire_line(p);
+            const std::size_t n = guide.size();
+            if (n > 1) guide.push_back(guide[n - 1] + 20.0 * (guide[n - 1] - guide[n - 2]).normalized());
+        }
+    }
+    update_route(route.graph, route.path, guide, base, state.route, ahead);
+}
+
+// Where the shaft would lie by its route and wire alone.
+Rail wanted_rail(Parts& p) {
+    CatheterRoute& route = *p.catheter_route;
+    if (route.rail_route != p.catheter_state->route) {
+        route.rail_route = p.catheter_state->route;
+        route.rail = build_rail(route.graph, route.path, route.rail_route, p.mount->mouth);
+        route.insertion_limit_mm = insertion_limit(route.graph, route.path, route.rail_route,
+                                                   p.catheter->steerable_length_mm() + beyond_route_mm);
+    }
+    Rail rail = route.rail;
+    const double base = base_arc_mm(*p.catheter, *p.catheter_state);
+    if (p.mount->follow_wire && p.wire && base > 0.0) {
+        const std::vector<Vec3> nodes = wire_line(p);
+        const double weight = wire_lead(p.wire->insertion_mm(), base) * wire_lead(base, 0.0, handing_over_mm);
+        if (nodes.size() > 2 && weight > 0.0) rail = blend(build_rail(p.mount->mouth, nodes, {}), rail, 1.0 - weight);
+    }
+    rail.lead = led_by_wire(p, rail.arc);
+    return rail;
+}
+
+// Rows of the last substep, seen from where the catheter stands now.  The force limit is the whole catheter's: at the
+// limit no sample may go further into the wall, and beyond it the catheter gives way to what pushes it.
+struct WallAround {
+    std::vector<WallLimit> limits;
+    std::vector<WallPush> pushes;
+    double load = 0.0;  ///< of all force or of that at the tip, the larger share of its limit
+};
+
+WallAround wall_around(const Parts& p, const CatheterShape& now) {
+    WallAround around;
+    const auto rows = p.contacts->rows();
+    const auto wall = p.contacts->wall_rows();
+    double all = 0.0, tip = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (wall[i].device != catheter_device) continue;
+        all += rows[i].multiplier;
+        if (wall[i].arc_mm <= p.contacts->settings().tip_length_mm) tip += rows[i].multiplier;
+    }
+    around.load = std::max(all / (p.catheter->force_limit_n * units::newton),
+                           tip / (p.catheter->tip_force_limit_n * units::newton));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (wall[i].device != catheter_device) continue;
+        const auto from_tip = static_cast<std::size_t>(std::floor(wall[i].arc_mm / catheter_spacing_mm + 0.5));
+        if (from_tip >= now.points.size()) continue;
+        const std::size_t point = now.points.size() - 1 - from_tip;
+        WallLimit limit;
+        limit.point = static_cast<Index>(point);
+        limit.normal = rows[i].normal;
+        limit.gap = rows[i].normal.dot(now.points[point] - wall[i].point) - wall[i].offset;
+        limit.force = around.load * p.catheter->force_limit_n * units::newton;
+        limit.penetration_limit = std::min(p.catheter->penetration_limit_mm, depth_a_substep_mm);
+        limit.force_limit = p.catheter->force_limit_n * units::newton;
+        around.limits.push_back(limit);
+        if (rows[i].multiplier > 0.0)
+            around.pushes.push_back({limit.point, rows[i].multiplier * rows[i].normal + rows[i].tangent_force});
+    }
+    return around;
+}
+
+// Near the wall no sample may run further than this in a substep: rows hold the wall's place and direction as they were
+// when it began, and a tip that rushes along a dented wall would leave both behind.
+constexpr double run_a_substep_mm = 0.2;
+constexpr double swung_wire_mn = 50.0;
+
+// A wire that sticks out and touches the wall is swung by the catheter: then it, too, is at the wall.
+bool at_the_wall(const Parts& p, const WallAround& around) {
+    return !around.limits.empty() || (p.wire && p.wire_drive->contact_mn > swung_wire_mn);
+}
+
+// How far the sample that goes farthest goes, matched from the tip, mm.
+double largest_shift(const CatheterShape& from, const CatheterShape& to) {
+    const std::size_t common = std::min(from.points.size(), to.points.size());
+    double squared = 0.0;
+    for (std::size_t k = 1; k <= common; ++k)
+        squared =
+            std::max(squared, (to.points[to.points.size() - k] - from.points[from.points.size() - k]).squaredNorm());
+    return std::sqrt(squared);
+}
+
+double pace_at_the_wall(const CatheterSpec& spec, const CatheterState& state, const CatheterCommand& command,
+                        const Rail& rail, const CatheterShape& start, double h, double limit_mm) {
+    const double run = largest_shift(start, shape(spec, attempt(spec, state, command, 1.0, h, limit_mm), rail));
+    return run > run_a_substep_mm ? run_a_substep_mm / run : 1.0;
+}
+
+// The shaft goes over to where route and wire want it, as fast as contact can follow, and only as far as the wall lets
+// it: not deeper than a command may go, and no further in where the catheter already gives way.
+void lay_shaft(Parts& p) {
+    CatheterRoute& route = *p.catheter_route;
+    Rail wanted = wanted_rail(p);
+    if (wanted.points == route.laid.points && wanted.lead == route.laid.lead) return;
+    const auto lie = [&](const Rail& rail) { return shape(*p.catheter, *p.catheter_state, rail); };
+    WallAround around = wall_around(p, route.shape);
+    for (WallLimit& limit : around.limits) limit.force_limit *= yielding_from;
+    const double shift = largest_shift(route.shape, lie(wanted));
+    const double most = at_the_wall(p, around) ? shift_at_wall_mm : shift_free_mm;
+    double share = shift > most ? most / shift : 1.0;
+    if (!around.limits.empty())
+        share *= allowed_fraction(route.shape.points, lie(blend(route.laid, wanted, share)).points, around.limits);
+    route.laid = blend(route.laid, wanted, share);
+    route.shape = lie(route.laid);
+}
+
+// The guidewire that sticks out of the catheter has no say in where the catheter takes it.  While it is pressed into
+// the wall beyond the limits of its own drive the catheter may only give way, that is
+// withdraw and straighten.  True if that took a part of the command.
+bool wire_presses(const WireDrive& drive, const StepSettings& settings) {
+    return drive.penetration_mm > settings.wire_penetration_limit_mm ||
+           drive.contact_mn > settings.wire_contact_limit_mn;
+}
+
+bool hold_back(CatheterCommand& command, const CatheterState& state) {
+    const CatheterCommand wanted = command;
+    command.advance_mm = std::min(0.0, command.advance_mm);
+    command.rotate_rad = 0.0;
+    for (std::size_t k = 0; k < state.bend_rad.size(); ++k) {
+        command.bend_rad[k] = std::min(command.bend_rad[k], state.bend_rad[k]);
+        command.direction_rad[k] = state.direction_rad[k];
+    }
+    return command.advance_mm != wanted.advance_mm || command.rotate_rad != wanted.rotate_rad ||
+           command.bend_rad != wanted.bend_rad;
+}
+
+}  // namespace
+
+void settle_catheter(Parts& p) {
+    choose_route(p);
+    p.catheter_route->laid = wanted_rail(p);
+    p.catheter_route->shape = shape(*p.catheter, *p.catheter_state, p.catheter_route->laid);
+}
+
+double move_catheter(Parts& p, const Input& input, double h) {
+    CatheterState& state = *p.catheter_state;
+    CatheterRoute& route = *p.catheter_route;
+    choose_route(p);
+    lay_shaft(p);
+    const Rail& rail = route.laid;
+    const CatheterShape start = route.shape;
+
+    CatheterCommand command;
+    const bool selected = input.device >= 0.5;
+    command.advance_mm = selected ? input.advance * h : 0.0;
+    command.rotate_rad = selected ? input.rotate * units::deg * h : 0.0;
+    command.bend_rad = {input.proximal_bend * units::deg, input.distal_bend * units::deg};
+    command.direction_rad = {input.proximal_direction * units::deg, input.distal_direction * units::deg};
+    command.bend_rad.resize(p.catheter->segments.size(), 0.0);
+    command.direction_rad.resize(p.catheter->segments.size(), 0.0);
+
+    const double limit = route.insertion_limit_mm;
+    WallAround around = wall_around(p, start);
+    std::vector<WallLimit>& limits = around.limits;
+    bool held = p.wire && wire_presses(*p.wire_drive, *p.settings) && hold_back(command, state);
+    if (around.load > yielding_from) {
+        const double share = std::min(1.0, (around.load - yielding_from) / (1.0 - yielding_from));
+        const CatheterCommand yielding = give_way(*p.catheter, state, rail, start, around.pushes, share, h);
+        // What is left of the operator's push; bends are targets and yield as a whole.
+        const double own = command.advance_mm > 0.0 ? (1.0 - share) * command.advance_mm : command.advance_mm;
+        command = yielding;
+        command.advance_mm += own;
+        // On its way out of the load depth alone is left to limit.
+        for (WallLimit& l : limits) l.force = 0.0;
+        held = true;
+    }
+    const double pace =
+        at_the_wall(p, around) ? pace_at_the_wall(*p.catheter, state, command, rail, start, h, limit) : 1.0;
+    command.advance_mm *= pace;
+    command.rotate_rad *= pace;
+    CatheterTaken taken = take(*p.catheter, state, command, rail, limits, pace * h, limit);
+    state = taken.state;
+    route.shape = std::move(taken.shape);
+    return held ? 1.0 : std::max(taken.refused, 1.0 - pace);
+}
+
+CatheterBore catheter_bore(const Parts& p) {
+    if (!p.catheter || !p.wire || p.catheter->inner_diameter_mm <= 0.0) return {};
+    const CatheterShape& shape = p.catheter_route->shape;
+    return {shape.points, shape.arc};
+}
+
+}  // namespace cathlab

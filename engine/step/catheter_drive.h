@@ -1,0 +1,19 @@
+// The catheter in a substep: the rail that its shaft is laid on, and what is taken of its command.
+#pragma once
+
+#include "contact/inside_catheter.h"
+#include "core/input.h"
+#include "step/parts.h"
+
+namespace cathlab {
+
+/// Takes of the catheter's command what the wall allows and moves it.  Returns the refused part, 0 to 1.
+double move_catheter(Parts& parts, const Input& input, double h);
+
+/// Brings the rail and the catheter's shape to where the wall is now, without a command.
+void settle_catheter(Parts& parts);
+
+/// The bore of the catheter for the wire inside it; empty where there is no catheter.
+CatheterBore catheter_bore(const Parts& parts);
+
+}  // namespace cathlab
