@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/check.h"
+#include "render/pixel_loops.h"
 
 namespace cathlab {
 
@@ -30,14 +31,6 @@ inline std::uint64_t frame_key(std::uint64_t seed, std::uint64_t frame, std::uin
     return mixed(seed * 0x9E3779B97F4A7C15ULL + mixed(frame * 4 + stream + 0x632BE59BD9B4E019ULL));
 }
 
-inline float normal_of(std::uint64_t key, std::uint64_t pixel) {
-    const std::uint64_t bits = mixed(key + pixel * 0x9E3779B97F4A7C15ULL);
-    const auto sum =
-        static_cast<std::int32_t>((bits & 0xFFFF) + ((bits >> 16) & 0xFFFF) + ((bits >> 32) & 0xFFFF) + (bits >> 48));
-    // Variance of one uniform on 0..65535 is (65536^2 - 1) / 12.
-    return static_cast<float>(sum - 131070) * (1.7320508F / 65536.0F);
-}
-
 std::vector<float> gaussian(double sigma) {
     const int radius = static_cast<int>(std::ceil(3 * sigma));
     std::vector<float> kernel;
@@ -52,18 +45,15 @@ std::vector<float> gaussian(double sigma) {
 }  // namespace
 
 float pixel_noise(std::uint64_t seed, std::uint64_t frame, std::uint64_t pixel, std::uint64_t stream) {
-    return normal_of(frame_key(seed, frame, stream), pixel);
+    return pixel_loops::normal_of(frame_key(seed, frame, stream), static_cast<std::uint32_t>(pixel));
 }
 
 void add_quantum_noise(ImageF& photons, std::uint64_t seed, std::uint64_t frame, const Workers& workers) {
     const std::uint64_t key = frame_key(seed, frame, 0);
     const auto width = static_cast<std::size_t>(photons.width);
+    const pixel_loops::Set& loops = pixel_loops::best();
     for_rows(photons, workers, [&](std::size_t y) {
-        float* row = photons.values.data() + y * width;
-        for (std::size_t x = 0; x < width; ++x) {
-            const float n = row[x] + std::sqrt(row[x]) * normal_of(key, y * width + x);
-            row[x] = n > 0.0F ? n : 0.0F;
-        }
+        loops.quantum_noise(key, static_cast<std::uint32_t>(y * width), width, photons.values.data() + y * width);
     });
 }
 
@@ -73,9 +63,9 @@ void add_electronic_noise(ImageF& photons, double sigma, std::uint64_t seed, std
     const std::uint64_t key = frame_key(seed, frame, 1);
     const auto s = static_cast<float>(sigma);
     const auto width = static_cast<std::size_t>(photons.width);
+    const pixel_loops::Set& loops = pixel_loops::best();
     for_rows(photons, workers, [&](std::size_t y) {
-        float* row = photons.values.data() + y * width;
-        for (std::size_t x = 0; x < width; ++x) row[x] += s * normal_of(key, y * width + x);
+        loops.electronic_noise(key, s, static_cast<std::uint32_t>(y * width), width, photons.values.data() + y * width);
     });
 }
 

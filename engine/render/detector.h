@@ -9,8 +9,7 @@
 namespace cathlab {
 
 /// Approximately normal number with mean 0 and variance 1, a pure function of its key: the sum of four 16-bit uniforms
-/// of a mixed 64-bit word (Irwin-Hall; excess kurtosis -0.3, |value| < 3.47), cheap enough for every pixel of every
-/// frame.
+/// (Irwin-Hall; excess kurtosis -0.3, |value| < 3.47), cheap enough for every pixel of every frame.
 float pixel_noise(std::uint64_t seed, std::uint64_t frame, std::uint64_t pixel, std::uint64_t stream);
 
 /// photons -> photons + sqrt(photons) * noise, not below 0: Poisson's mean and variance.  Before the blur, since quanta

@@ -16,6 +16,7 @@
 #include "render/path_lengths.h"
 #include "render/path_raster.h"
 #include "render/path_surface.h"
+#include "render/pixel_loops.h"
 #include "render/projection.h"
 
 namespace cathlab {
@@ -70,31 +71,7 @@ ViewKey context_key(const FrameDescription& f, int width, int height) {
     return key;
 }
 
-// Beer-Lambert of many pixels' bins at once: transmission * exp(-exponent) in place of the exponent.
-void attenuate(const float* transmission, std::size_t count, float* __restrict exponent) {
-    for (std::size_t n = 0; n < count; ++n) exponent[n] = transmission[n] * fast_exp(-exponent[n]);
-}
-
-// log of the intensity relative to the wanted one, less a share of the coarse picture.
-void to_log(const float* history, const float* coarse, float unit, float even, float mean, std::size_t count,
-            float* __restrict out) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const float relative = history[i] * unit;
-        out[i] = fast_log(relative > 0.004F ? relative : 0.004F) - even * (coarse[i] - mean);
-    }
-}
-
-// The row with its edges enhanced, as grey in [0, 255].  padded: one more value at each end.
-void sharpen(const float* padded, const float* above, const float* below, float edge, float scale, float offset,
-             std::size_t count, float* __restrict out) {
-    for (std::size_t x = 0; x < count; ++x) {
-        const float here = padded[x + 1];
-        const float sharp = here + edge * (4.0F * here - padded[x] - padded[x + 2] - above[x] - below[x]);
-        const float value = offset + scale * sharp + 0.5F;
-        const float low = value < 0.0F ? 0.0F : value;
-        out[x] = low > 255.0F ? 255.0F : low;
-    }
-}
+static_assert(pixel_loops::bins == energy_bins);
 
 // Pixels that wait for their exponentials, which are cheaper for many at a time.
 struct Batch {
@@ -114,6 +91,7 @@ struct Fluoroscope::Impl {
     Impl(GlDevicePtr device, Workers w) : workers(std::move(w)), buffer(std::move(device)) {}
 
     Workers workers;
+    const pixel_loops::Set& loops = pixel_loops::best();
     PathLengthBuffer buffer;
     std::unique_ptr<BeamTable> beam;
     double beam_kvp = 0, beam_copper = -1;
@@ -323,7 +301,7 @@ void Fluoroscope::Impl::attenuate_pixels(Batch& batch) {
     const std::size_t count = batch.pixel.size();
     batch.transmission.resize(count);
     for (std::size_t n = 0; n < count; ++n) batch.transmission[n] = transmission[batch.pixel[n]];
-    attenuate(batch.transmission.data()->data(), count * energy_bins, batch.exponent.data()->data());
+    loops.attenuate(batch.transmission.data()->data(), count * energy_bins, batch.exponent.data()->data());
     for (std::size_t n = 0; n < count; ++n) {
         float sum = 0;
         for (const float bin : batch.exponent[n]) sum += bin;
@@ -338,20 +316,16 @@ void Fluoroscope::Impl::combine() {
     intensity.width = context_intensity.width;
     intensity.height = context_intensity.height;
     intensity.values.resize(count);
+    std::vector<pixel_loops::Absorber> absorbers;
+    for (std::size_t p = 0; p < part_count; ++p) {
+        const Part& part = parts[p];
+        absorbers.push_back({part.lengths.length_mm.values.data(), part.mu.data()});
+        if (part.with_contrast())
+            absorbers.push_back({part.lengths.contrast_mm_mg_ml.values.data(), part.mu_of_contrast.data()});
+    }
     workers.for_ranges(count, 8192, [&](std::size_t begin, std::size_t end) {
-        Batch batch;
-        for (std::size_t i = begin; i < end; ++i) {
-            bool touched = false;
-            for (std::size_t p = 0; p < part_count; ++p)
-                touched = touched || parts[p].lengths.length_mm.values[i] != 0.0F;
-            if (touched) {
-                add_exponent(i, batch.add(i));
-                if (batch.full()) attenuate_pixels(batch);
-            } else {
-                intensity.values[i] = context_intensity.values[i] + scatter.values[i];
-            }
-        }
-        if (!batch.pixel.empty()) attenuate_pixels(batch);
+        loops.absorb(absorbers.data(), absorbers.size(), transmission.data()->data(), context_intensity.values.data(),
+                     scatter.values.data(), begin, end, intensity.values.data());
     });
     const auto media = static_cast<std::size_t>(devices.media);
     workers.for_ranges(devices.pixel.size(), 1024, [&](std::size_t begin, std::size_t end) {
@@ -399,10 +373,9 @@ void Fluoroscope::Impl::display(const FrameExposure& e) {
     const auto even = static_cast<float>(e.harmonisation);
     // The wanted kerma makes the measuring field's middle (the mean of its logarithms) grey `level`.
     const auto unit = static_cast<float>(reference / std::exp(coarse_mean) / photons_of_kerma);
-    // Plain pointers to plain loops: the compiler then takes several pixels at once.
     workers.for_ranges(static_cast<std::size_t>(height), 32, [&](std::size_t begin, std::size_t end) {
-        to_log(history.values.data() + begin * columns, coarse_log.values.data() + begin * columns, unit, even, mean,
-               (end - begin) * columns, log_image.values.data() + begin * columns);
+        loops.to_log(history.values.data() + begin * columns, coarse_log.values.data() + begin * columns, unit, even,
+                     mean, (end - begin) * columns, log_image.values.data() + begin * columns);
     });
     const auto edge = static_cast<float>(0.25 * e.edge_enhancement);
     const auto scale = static_cast<float>(255.0 / e.window);
@@ -410,7 +383,6 @@ void Fluoroscope::Impl::display(const FrameExposure& e) {
     grey.resize(history.values.size());
     workers.for_ranges(static_cast<std::size_t>(height), 32, [&](std::size_t begin, std::size_t end) {
         std::vector<float> padded(columns + 2);
-        std::vector<float> values(columns);
         for (std::size_t y = begin; y < end; ++y) {
             const float* row = log_image.values.data() + y * columns;
             const float* above = y > 0 ? row - columns : row;
@@ -418,8 +390,7 @@ void Fluoroscope::Impl::display(const FrameExposure& e) {
             std::copy(row, row + columns, padded.begin() + 1);  // edges repeat
             padded.front() = row[0];
             padded.back() = row[columns - 1];
-            sharpen(padded.data(), above, below, edge, scale, offset, columns, values.data());
-            for (std::size_t x = 0; x < columns; ++x) grey[y * columns + x] = static_cast<std::uint8_t>(values[x]);
+            loops.sharpen(padded.data(), above, below, edge, scale, offset, columns, grey.data() + y * columns);
         }
     });
 }

@@ -181,11 +181,16 @@ void GlFramebuffer::bind() const {
 }
 
 void GlFramebuffer::read(int attachment, GLenum format, GLenum type, void* out) const {
+    device_->gl().BindFramebuffer(GL_FRAMEBUFFER, id_);
+    device_->gl().ReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(attachment));
+    read_rows(0, height_, format, type, out);
+}
+
+void GlFramebuffer::read_rows(int first, int last, GLenum format, GLenum type, void* out) const {
     const GlTable& gl = device_->gl();
     gl.BindFramebuffer(GL_FRAMEBUFFER, id_);
-    gl.ReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(attachment));
     gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
-    gl.ReadPixels(0, 0, width_, height_, format, type, out);
+    gl.ReadPixels(0, first, width_, last - first, format, type, out);
 }
 
 }  // namespace cathlab

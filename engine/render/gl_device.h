@@ -66,6 +66,8 @@ public:
     GlFramebuffer& operator=(const GlFramebuffer&) = delete;
     void bind() const;  ///< for drawing, with its viewport
     void read(int attachment, GLenum format, GLenum type, void* out) const;
+    /// Rows [first, last) only, to the start of `out`.
+    void read_rows(int first, int last, GLenum format, GLenum type, void* out) const;
     int width() const { return width_; }
     int height() const { return height_; }
 

@@ -38,7 +38,8 @@ struct Overlay::Impl {
     std::vector<std::uint8_t> painted;  // a tile of the picture: whether a triangle may have touched it
 
     void find_painted(const HudDrawList& list, int columns, int rows);
-    void paint(const HudDrawList& list, Image8& picture);
+    void read_painted(int columns, int rows);
+    void paint(int columns, Image8& picture) const;
     void use_atlas(const std::shared_ptr<const DrawAtlas>& wanted) {
         const GlTable& gl = device->gl();
         gl.ActiveTexture(GL_TEXTURE0);
@@ -71,10 +72,27 @@ void Overlay::Impl::find_painted(const HudDrawList& list, int columns, int rows)
     }
 }
 
+// The panels stand at the top and the bottom: the rows between stay where they are.
+void Overlay::Impl::read_painted(int columns, int rows) {
+    const auto touched = [&](int row) {
+        const auto begin = painted.begin() + static_cast<std::ptrdiff_t>(row) * columns;
+        return std::find(begin, begin + columns, std::uint8_t{1}) != begin + columns;
+    };
+    const auto row_bytes = static_cast<std::size_t>(buffer->width()) * 4;
+    rgba.resize(row_bytes * static_cast<std::size_t>(buffer->height()));
+    for (int from = 0; from < rows; ++from) {
+        if (!touched(from)) continue;
+        int to = from + 1;
+        while (to < rows && touched(to)) ++to;
+        const int first = from * tile_px, last = std::min(buffer->height(), to * tile_px);
+        buffer->read_rows(first, last, GL_RGBA, GL_UNSIGNED_BYTE,
+                          rgba.data() + row_bytes * static_cast<std::size_t>(first));
+        from = to;
+    }
+}
+
 // Over the picture, only where something was painted.
-void Overlay::Impl::paint(const HudDrawList& list, Image8& picture) {
-    const int columns = (picture.width + tile_px - 1) / tile_px, rows = (picture.height + tile_px - 1) / tile_px;
-    find_painted(list, columns, rows);
+void Overlay::Impl::paint(int columns, Image8& picture) const {
     for (int y = 0; y < picture.height; ++y) {
         for (int column = 0; column < columns; ++column) {
             if (painted[static_cast<std::size_t>(y / tile_px) * static_cast<std::size_t>(columns) +
@@ -145,10 +163,11 @@ void Overlay::draw(const HudDrawList& list, Image8& picture) {
     }
     gl.Disable(GL_SCISSOR_TEST);
 
-    self.rgba.resize(picture.rgb.size() / 3 * 4);
-    self.buffer->read(0, GL_RGBA, GL_UNSIGNED_BYTE, self.rgba.data());
+    const int columns = (picture.width + tile_px - 1) / tile_px, rows = (picture.height + tile_px - 1) / tile_px;
+    self.find_painted(list, columns, rows);
+    self.read_painted(columns, rows);
     self.device->check("overlay");
-    self.paint(list, picture);
+    self.paint(columns, picture);
 }
 
 }  // namespace cathlab

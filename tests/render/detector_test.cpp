@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <tuple>
+#include <vector>
 
 #include "render/fast_math.h"
+#include "render/pixel_loops.h"
 
 namespace cathlab {
 namespace {
@@ -85,8 +89,64 @@ TEST(WideBlur, KeepsAFlatPictureAndSmoothsAnEdge) {
     EXPECT_NEAR(smooth.at(120, 50), 0.841, 0.03);  // normal distribution at one sigma
 }
 
+TEST(QuantumNoise, NeighboursKnowNothingOfEachOther) {
+    ImageF image(512, 512, 400.0F);
+    add_quantum_noise(image, 3, 8, Workers());
+    for (const int step : {1, 2, 511, 512, 513, 1024, 65536}) {
+        double sum = 0;
+        std::size_t pairs = 0;
+        for (std::size_t i = 0; i + static_cast<std::size_t>(step) < image.values.size(); ++i, ++pairs)
+            sum += (image.values[i] - 400) * (image.values[i + static_cast<std::size_t>(step)] - 400);
+        EXPECT_LT(std::fabs(sum / 400 / std::sqrt(static_cast<double>(pairs))), 4.0) << step;  // standard errors
+    }
+}
+
+TEST(PixelLoops, EveryInstructionSetGivesTheSameValues) {
+    const pixel_loops::Set* wide = pixel_loops::avx2();
+    if (wide == nullptr) GTEST_SKIP() << "this processor has no AVX2";
+    const pixel_loops::Set& plain = pixel_loops::baseline();
+    constexpr std::size_t count = 1003;
+    std::vector<float> transmission(8 * count), amount(count), more(count), zero(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        amount[i] = i % 3 == 0 ? 0.0F : 0.07F * static_cast<float>(i % 301);
+        more[i] = i % 5 == 0 ? 0.3F : 0.0F;
+    }
+    for (std::size_t i = 0; i < transmission.size(); ++i)
+        transmission[i] = 0.01F + 0.001F * static_cast<float>(i * 7919 % 131);
+    const std::vector<float> mu{0.05F, 0.04F, 0.03F, 0.025F, 0.02F, 0.018F, 0.017F, 0.016F};
+    const std::array<pixel_loops::Absorber, 2> absorbers{{{amount.data(), mu.data()}, {more.data(), mu.data()}}};
+    const auto run = [&](const pixel_loops::Set& set) {
+        std::vector<float> out(count), logs(count);
+        set.absorb(absorbers.data(), 2, transmission.data(), amount.data(), more.data(), 1, count - 1, out.data());
+        for (float& v : out) v *= 200.0F;
+        set.quantum_noise(77, 5, count, out.data());
+        set.electronic_noise(78, 2.0F, 5, count, out.data());
+        set.to_log(out.data(), more.data(), 0.02F, 0.7F, 0.1F, count, logs.data());
+        std::vector<std::uint8_t> grey(count - 2);
+        set.sharpen(logs.data(), zero.data(), zero.data(), 0.1F, 127.0F, 150.0F, count - 2, grey.data());
+        set.attenuate(transmission.data(), count, out.data());
+        return std::tuple(out, logs, grey);
+    };
+    EXPECT_TRUE(run(plain) == run(*wide));
+}
+
+TEST(PixelLoops, AbsorptionIsTheSumOfTheBinsExponentials) {
+    const std::vector<float> transmission{0.1F, 0.2F, 0.05F, 0.15F, 0.2F, 0.1F, 0.1F, 0.1F},
+        mu{0.05F, 0.04F, 0.03F, 0.025F, 0.02F, 0.018F, 0.017F, 0.016F};
+    for (const float amount : {0.5F, 30.0F, 900.0F, -4.0F}) {
+        const float untouched = 1.0F, scatter = 0.25F;
+        const pixel_loops::Absorber absorber{&amount, mu.data()};
+        float out = 0;
+        pixel_loops::best().absorb(&absorber, 1, transmission.data(), &untouched, &scatter, 0, 1, &out);
+        double truth = 0.25;
+        for (std::size_t k = 0; k < 8; ++k) truth += transmission[k] * std::exp(-static_cast<double>(mu[k]) * amount);
+        EXPECT_NEAR(out / truth, 1.0, 1e-6) << amount;
+    }
+}
+
 TEST(FastMath, ExpAndLogAgreeWithTheLibrary) {
-    for (double x = -20; x < 20; x += 0.0137) {
+    for (int i = -1460; i < 1460; ++i) {
+        const double x = 0.0137 * i;
         const auto f = static_cast<float>(x);
         EXPECT_NEAR(fast_exp(f) / std::exp(static_cast<double>(f)), 1.0, 3e-6);
         EXPECT_NEAR(fast_log(static_cast<float>(std::exp(x))), x, 4e-6 * (1 + std::fabs(x)));
