@@ -5,16 +5,11 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "straight_rail.h"
 
 using namespace cathlab;
 
 namespace {
-
-Rail straight_rail(double length) {
-    std::vector<Vec3> nodes;
-    for (double z = 0.0; z <= length; z += 2.0) nodes.emplace_back(0.0, 0.0, z);
-    return build_rail(Pose{}, nodes, {});
-}
 
 CatheterState bent(const CatheterSpec& spec, double insertion, double proximal_deg, double distal_deg,
                    double direction) {

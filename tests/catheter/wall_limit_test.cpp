@@ -5,16 +5,11 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "straight_rail.h"
 
 using namespace cathlab;
 
 namespace {
-
-Rail straight_rail() {
-    std::vector<Vec3> nodes;
-    for (double z = 0.0; z <= 300.0; z += 2.0) nodes.emplace_back(0.0, 0.0, z);
-    return build_rail(Pose{}, nodes, {});
-}
 
 WallLimit wall_at(std::size_t point, const Vec3& normal, double gap, double force = 0.0) {
     WallLimit limit;

@@ -3,7 +3,7 @@
 
 #include "ball.h"
 #include "contact/contact_set.h"
-#include "contact/device_samples.h"
+#include "device_samples.h"
 #include "contact/penetration.h"
 #include "contact/push_out.h"
 #include "core/deterministic_math.h"
