@@ -10,31 +10,25 @@ namespace cathlab {
 
 namespace {
 
-constexpr std::int64_t steps = 256;   // a pixel's
-constexpr double farthest = 1 << 22;  // of a corner from the picture, in steps
-constexpr double nearest_mm = 1e-3;   // of a corner to the source
+constexpr double farthest_px = 1 << 20;  // of a corner from the picture
+constexpr double nearest_mm = 1e-3;      // of a corner to the source
 
-// On which side of the edge from a to b a point lies: positive inside, and zero only for the one of the two triangles
-// of an edge to which its pixels belong.
-struct Edge {
-    std::int64_t value, right, down;  // at the box's first pixel; per pixel
+// The least whole number that is not below v, at most `limit`, at least 0.
+int ceiling(double v, int limit) {
+    const double bounded = std::min(std::max(v, 0.0), static_cast<double>(limit));
+    const auto whole = static_cast<int>(bounded);
+    return whole + (bounded > whole ? 1 : 0);
+}
+
+// Where an edge lies in a row.  Made from its upper end to its lower by both of its triangles, hence the same in both.
+struct EdgeLine {
+    double column, row, slope;
 
     template <class Corner>
-    Edge(const Corner& a, const Corner& b, std::int64_t i, std::int64_t j) {
-        const std::int64_t di = b.i - a.i, dj = b.j - a.j;
-        const bool owns = dj > 0 || (dj == 0 && di > 0);
-        value = di * (j - a.j) - dj * (i - a.i) - (owns ? 0 : 1);
-        right = -dj * steps;
-        down = di * steps;
-    }
+    EdgeLine(const Corner& upper, const Corner& lower)
+        : column(upper.column), row(upper.row), slope((lower.column - upper.column) / (lower.row - upper.row)) {}
+    int first_pixel(int y, int width) const { return ceiling(column + (y - row) * slope, width); }
 };
-
-int first_pixel(std::int64_t step) {
-    return static_cast<int>((step + steps - 1) >> 8);
-}
-int last_pixel(std::int64_t step) {
-    return static_cast<int>(step >> 8);
-}
 
 }  // namespace
 
@@ -50,10 +44,7 @@ void PathRaster::project(const Projection& projection, std::span<const Vec3> ver
     for (std::size_t i = 0; i < slope_x_.size(); ++i) slope_x_[i] = (x0 + pixel_x * static_cast<double>(i)) / sid;
     for (std::size_t j = 0; j < slope_y_.size(); ++j) slope_y_[j] = (y0 + pixel_y * static_cast<double>(j)) / sid;
 
-    const double scale_x = static_cast<double>(steps) / pixel_x, scale_y = static_cast<double>(steps) / pixel_y;
-    const auto snapped = [](double v) {
-        return static_cast<std::int64_t>(std::floor(std::clamp(v, -farthest, farthest) + 0.5));
-    };
+    const double per_pixel_x = 1.0 / pixel_x, per_pixel_y = 1.0 / pixel_y;
     corners_.resize(vertices.size());
     for (std::size_t k = 0; k < vertices.size(); ++k) {
         const Vec3 p = vertices[k] - projection.source();
@@ -63,32 +54,40 @@ void PathRaster::project(const Projection& projection, std::span<const Vec3> ver
         c.z = p.dot(projection.normal());
         CATHLAB_CHECK(c.z > nearest_mm, "a surface reaches behind the X-ray source");
         c.inverse = 1.0 / c.z;
-        c.i = snapped((sid * c.x * c.inverse - x0) * scale_x);
-        c.j = snapped((sid * c.y * c.inverse - y0) * scale_y);
+        c.column = std::clamp((sid * c.x * c.inverse - x0) * per_pixel_x, -farthest_px, farthest_px);
+        c.row = std::clamp((sid * c.y * c.inverse - y0) * per_pixel_y, -farthest_px, farthest_px);
     }
 }
 
 template <bool with_values>
 void PathRaster::add(const Triangle& t, std::span<const double> values) {
     const Corner& a = corners_[static_cast<std::size_t>(t[0])];
-    const Corner* b = &corners_[static_cast<std::size_t>(t[1])];
-    const Corner* c = &corners_[static_cast<std::size_t>(t[2])];
-    const auto [low_i, high_i] = std::minmax({a.i, b->i, c->i});
-    const auto [low_j, high_j] = std::minmax({a.j, b->j, c->j});
-    const int left = std::max(0, first_pixel(low_i)), right = std::min(width_ - 1, last_pixel(high_i));
-    const int top = std::max(0, first_pixel(low_j)), bottom = std::min(height_ - 1, last_pixel(high_j));
-    if (left > right || top > bottom) return;  // between the pixels' centres, or outside
-    const std::int64_t area = (b->i - a.i) * (c->j - a.j) - (b->j - a.j) * (c->i - a.i);
-    if (area == 0) return;
+    const Corner& b = corners_[static_cast<std::size_t>(t[1])];
+    const Corner& c = corners_[static_cast<std::size_t>(t[2])];
+    // From top to bottom; each exchange turns the way round.
+    const Corner *upper = &a, *middle = &b, *lower = &c;
+    bool turned = mirrored_;
+    const auto order = [&](const Corner*& first, const Corner*& second) {
+        if (first->row <= second->row) return;
+        std::swap(first, second);
+        turned = !turned;
+    };
+    order(upper, middle);
+    order(middle, lower);
+    order(upper, middle);
+    const int top = ceiling(upper->row, height_), waist = ceiling(middle->row, height_);
+    const int bottom = ceiling(lower->row, height_);
+    if (top == bottom) return;  // between two rows' centres, or outside
+    if (std::max({a.column, b.column, c.column}) <= -1.0 || std::min({a.column, b.column, c.column}) >= width_) return;
 
     // The plane n . p = offset; on the ray p = depth * (slope_x, slope_y, 1).
-    const double ux = b->x - a.x, uy = b->y - a.y, uz = b->z - a.z;
-    const double vx = c->x - a.x, vy = c->y - a.y, vz = c->z - a.z;
+    const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
+    const double vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
     double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
     const double offset = nx * a.x + ny * a.y + nz * a.z;
-    // Seen edge-on, a plane is not met where its snapped triangle lies: never farther than the corners.
-    const double least = std::min({a.inverse, b->inverse, c->inverse});
-    const double most = std::max({a.inverse, b->inverse, c->inverse});
+    // Seen edge-on, a plane is hardly met where its triangle lies: never farther than the corners.
+    const double least = std::min({a.inverse, b.inverse, c.inverse});
+    const double most = std::max({a.inverse, b.inverse, c.inverse});
     const double per_offset = std::fabs(offset) > 1e-12 ? 1.0 / offset : 0.0;
     nx *= per_offset;
     ny *= per_offset;
@@ -110,41 +109,31 @@ void PathRaster::add(const Triangle& t, std::span<const double> values) {
         value_0 = va - (gx * a.x + gy * a.y + gz * a.z);
     }
 
-    const bool leaves = (area > 0) != mirrored_;
-    const float sign = leaves ? 1.0F : -1.0F;
-    if (area < 0) std::swap(b, c);
-    const std::int64_t i = left * steps, j = top * steps;
-    Edge ab(a, *b, i, j), bc(*b, *c, i, j), ca(*c, a, i, j);
-    for (int y = top; y <= bottom; ++y) {
-        const double row = ny * slope_y_[static_cast<std::size_t>(y)] + nz;
+    const EdgeLine whole(*upper, *lower), first(*upper, *middle), second(*middle, *lower);
+    for (int y = top; y < bottom; ++y) {
+        const double slope_y = slope_y_[static_cast<std::size_t>(y)];
+        const double row = ny * slope_y + nz;
+        int begin = (y < waist ? first : second).first_pixel(y, width_), end = whole.first_pixel(y, width_);
+        // Corners that run clockwise on the picture (rows run downward) are an outer side seen from behind: an exit.
+        float sign = turned ? -1.0F : 1.0F;
+        if (begin < end) sign = -sign;
+        if (begin > end) std::swap(begin, end);
         const std::size_t start = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
-        std::int64_t e0 = ab.value, e1 = bc.value, e2 = ca.value;
-        bool inside = false;
-        for (int x = left; x <= right; ++x, e0 += ab.right, e1 += bc.right, e2 += ca.right) {
-            if ((e0 | e1 | e2) < 0) {
-                if (inside) break;
-                continue;
-            }
-            inside = true;
-            const double slope_x = slope_x_[static_cast<std::size_t>(x)];
-            const double inverse = std::min(most, std::max(least, nx * slope_x + row));
-            const double depth = 1.0 / inverse;
+        for (auto x = static_cast<std::size_t>(begin); x < static_cast<std::size_t>(end); ++x) {
+            const double slope_x = slope_x_[x];
+            const double depth = 1.0 / std::min(most, std::max(least, nx * slope_x + row));
             const auto d = static_cast<float>(depth - reference_);
-            Sum& sum = sums_[start + static_cast<std::size_t>(x)];
+            Sum& sum = sums_[start + x];
             sum.depth += sign * d;
             sum.exits += sign;
             if constexpr (with_values) {
-                const double value = value_0 + depth * (gx * slope_x + gy * slope_y_[static_cast<std::size_t>(y)] + gz);
-                const auto v = static_cast<float>(value);
-                Moments& moments = moments_[start + static_cast<std::size_t>(x)];
+                const auto v = static_cast<float>(value_0 + depth * (gx * slope_x + gy * slope_y + gz));
+                Moments& moments = moments_[start + x];
                 moments.value_depth += sign * v * d;
                 moments.value += sign * v;
                 moments.depth_2 += sign * d * d;
             }
         }
-        ab.value += ab.down;
-        bc.value += bc.down;
-        ca.value += ca.down;
     }
 }
 

@@ -2,7 +2,6 @@
 // software rasteriser spends on setting up a triangle of a few pixels is several times what the triangle itself costs.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -13,8 +12,9 @@ namespace cathlab {
 
 /// Scan conversion of the surface as the source sees it: every pixel's centre adds the distance where its ray leaves
 /// the surface and takes off that where it enters [freud2006], into float32.  The distance is that to the triangle's
-/// plane, exactly: 1 / depth is linear over the picture.  Corners are snapped to 1/256 pixel and an edge's pixels
-/// belong to one of its two triangles, so that a closed surface has as many entries as exits on every ray.
+/// plane, exactly: 1 / depth is linear over the picture.  In each row an edge begins at one pixel, the same for both of
+/// its triangles, and counts with the direction in which each runs through it: on a closed surface these cancel, so
+/// that every ray has as many entries as exits whatever is rounded.
 class PathRaster {
 public:
     /// vertices: mm, world, and wholly on the detector's side of the source; values: one a vertex, >= 0, to be
@@ -24,9 +24,9 @@ public:
 
 private:
     struct Corner {
-        double x, y, z;     // mm along the detector's rows, its columns, and towards it, from the source
-        double inverse;     // 1 / z
-        std::int64_t i, j;  // pixel coordinates in 1/256, 0 = the first pixel's centre
+        double x, y, z;      // mm along the detector's rows, its columns, and towards it, from the source
+        double inverse;      // 1 / z
+        double column, row;  // on the picture, whole at the pixels' centres
     };
     struct Sum {
         float depth = 0.0F;  // leaving - entering, along the detector's normal, less a reference
