@@ -108,7 +108,6 @@ void bench(const BenchOptions& options, const AppContext& context) {
                                       FilmOptions{"", scene.video.width, scene.video.height, scene.video.fps,
                                                   [&](std::string_view part) { parts.begin(part); }},
                                       false);
-    catch_stop_signals();
     Progress progress("benchmark");
     const Input base = session.base_input();
     const auto steps = std::max<std::int64_t>(1, std::llround(options.seconds / session.dt()));

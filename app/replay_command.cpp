@@ -92,7 +92,6 @@ void replay(const ReplayOptions& options, AppContext& context) {
     std::unique_ptr<Film> film;
     if (filmed)
         film = std::make_unique<Film>(scene, film_options(options.film, scene, options.film.video), threads.film_apart);
-    catch_stop_signals();
     Progress progress("replaying");
     std::int64_t k = 0;
     bool agrees = true;

@@ -205,7 +205,6 @@ void run(RunOptions options, AppContext& context) {
     check_run_folder(options.out, options.force);
     const bool filmed = options.film.video != "none";
     Session session(scene, options.seed.value_or(scene.seed), share_threads(options.threads, filmed).step, context);
-    catch_stop_signals();
     Recording recording(options, session, script, context);
     const bool complete = recording.run();
     const double simulated = recording.simulated_s();

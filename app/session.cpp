@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "core/errors.h"
 #include "progress.h"
 #include "scene/build_world.h"
 #include "step/step.h"
@@ -11,15 +12,24 @@
 namespace cathlab {
 
 Session::Session(const SceneSpec& scene, std::uint64_t seed, int threads, const AppContext& context) : scene_(scene) {
+    catch_stop_signals();  // here begins what takes long
     Progress progress("building");
     BuildOptions options;
     options.threads = threads;
     options.cache_folder = context.cache_folder;
-    options.progress = [&](double fraction, std::string_view what) { progress.update(fraction, what); };
+    const auto end_if_wanted = [] {
+        if (stop_wanted()) throw UserError("stopped while the scene was being built; nothing was written");
+    };
+    options.progress = [&](double fraction, std::string_view what) {
+        end_if_wanted();
+        progress.update(fraction, what);
+    };
     const auto models = build_models(scene_, options);
+    end_if_wanted();
     world_ = build_world(scene_, *models, seed, threads);
     anatomy_hash_ = cathlab::anatomy_hash(*models);
     prepare(*world_);
+    end_if_wanted();
 }
 
 void Session::step(const Input& input) {
