@@ -182,6 +182,34 @@ Rail blend(const Rail& from, const Rail& to, double share) {
     return out;
 }
 
+Rail laid_over_wire(const Rail& laid, const Rail& route, const Rail& wire, double tip_mm, double yielding) {
+    constexpr double handing_over_mm = 20.0;
+    Rail out;
+    double kept_mm = 0.0;
+    for (std::size_t i = 0; i < laid.points.size() && laid.arc[i] <= std::min(tip_mm, route.length()); ++i) {
+        const Vec3 aside = route.point(laid.arc[i]) - laid.points[i];
+        out.points.push_back(laid.points[i] + yielding * aside);
+        kept_mm = laid.arc[i];
+    }
+    const auto ahead = [&](double arc) -> Vec3 {
+        const Vec3 on = route.point(arc);
+        if (wire.points.empty()) return on;
+        return on + wire_lead(wire.length(), arc, handing_over_mm) * (wire.point(arc) - on);
+    };
+    // What is ahead starts where the laid part ends.
+    const Vec3 step = out.points.empty() ? Vec3(Vec3::Zero()) : Vec3(out.points.back() - ahead(kept_mm));
+    constexpr double apart_mm = 0.5;  // of the last kept point and the next
+    for (std::size_t i = 0; i < route.points.size(); ++i) {
+        const double arc = route.arc[i];
+        if (!out.points.empty() && arc < kept_mm + apart_mm) continue;
+        const double fade = std::max(0.0, 1.0 - (arc - kept_mm) / handing_over_mm);
+        out.points.push_back(ahead(arc) + fade * step);
+    }
+    if (out.points.size() < 2) return route;
+    complete(out, route.side.front());
+    return out;
+}
+
 double wire_lead(double wire_mm, double base_mm, double over_mm) {
     const double t = std::clamp((wire_mm - base_mm) / over_mm, 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);

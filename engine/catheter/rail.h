@@ -49,6 +49,12 @@ Rail build_rail(const Pose& mouth, std::span<const Vec3> nodes, std::span<const 
 /// the bit.
 Rail blend(const Rail& from, const Rail& to, double share);
 
+/// The rail of a shaft that slides over a wire.  Behind the tip it stays where it was laid, but for `yielding` (0 to 1)
+/// of the way to the route; ahead of the tip it runs along the wire, and from the wire's end on along the route.  So
+/// the wire leads by what is ahead of the catheter: what is inside it is bent by it and could not.  As long as `route`.
+/// laid: without points = nothing laid yet.  wire: from the mouth; without points = none.
+Rail laid_over_wire(const Rail& laid, const Rail& route, const Rail& wire, double tip_mm, double yielding);
+
 /// How much a wire that reaches `wire_mm` beyond the mouth leads a base at `base_mm`: 0 at or behind the base, 1 from
 /// `over_mm` beyond it, smooth between.
 double wire_lead(double wire_mm, double base_mm, double over_mm = 20.0);

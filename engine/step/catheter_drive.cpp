@@ -11,14 +11,13 @@ namespace {
 
 // From this share of its force limit on the catheter gives way, at the limit at full speed.
 constexpr double yielding_from = 0.75;
+// A shaft that was laid over a wire yields sideways, to the vessel's middle, from this share on.
+constexpr double sideways_from = 0.4;
 // How far a command may drive the catheter into the wall in one substep, beyond what the wall has yielded: the wall is
 // then never more than this behind, and the device's own limit (0.5 mm) is kept with a margin for its folds.
 constexpr double depth_a_substep_mm = 0.15;
 // How far beyond its steerable part the catheter's way on is looked at, for where the vessels end.
 constexpr double beyond_route_mm = 60.0;
-// Over so much of its way out of the sheath the base is handed from the sheath's direction to the wire's: a wire just
-// beyond the mouth is bent by the catheter round it and could not lead that.
-constexpr double handing_over_mm = 20.0;
 // The shaft goes over to the rail that route and wire ask for by no more than this in a substep, at the wall and free.
 constexpr double shift_at_wall_mm = 0.1;
 constexpr double shift_free_mm = 0.5;
@@ -77,8 +76,9 @@ void choose_route(Parts& p) {
     update_route(route.graph, route.path, guide, base, state.route, ahead);
 }
 
-// Where the shaft would lie by its route and wire alone.
-Rail wanted_rail(Parts& p) {
+// Where the shaft would lie by its route and wire alone.  yielding: how far it goes back to the vessel's middle, 0
+// to 1.
+Rail wanted_rail(Parts& p, double yielding) {
     CatheterRoute& route = *p.catheter_route;
     if (route.rail_route != p.catheter_state->route) {
         route.rail_route = p.catheter_state->route;
@@ -87,11 +87,10 @@ Rail wanted_rail(Parts& p) {
                                                    p.catheter->steerable_length_mm() + beyond_route_mm);
     }
     Rail rail = route.rail;
-    const double base = base_arc_mm(*p.catheter, *p.catheter_state);
-    if (p.mount->follow_wire && p.wire && base > 0.0) {
-        const std::vector<Vec3> nodes = wire_line(p);
-        const double weight = wire_lead(p.wire->insertion_mm(), base) * wire_lead(base, 0.0, handing_over_mm);
-        if (nodes.size() > 2 && weight > 0.0) rail = blend(build_rail(p.mount->mouth, nodes, {}), rail, 1.0 - weight);
+    if (p.mount->follow_wire && p.wire) {
+        const std::vector<Vec3> line = wire_line(p);
+        rail = laid_over_wire(route.laid, route.rail, line.size() > 2 ? build_rail(p.mount->mouth, line, {}) : Rail{},
+                              p.catheter_state->insertion_mm, yielding);
     }
     rail.lead = led_by_wire(p, rail.arc);
     return rail;
@@ -166,10 +165,11 @@ double pace_at_the_wall(const CatheterSpec& spec, const CatheterState& state, co
 // it: not deeper than a command may go, and no further in where the catheter already gives way.
 void lay_shaft(Parts& p) {
     CatheterRoute& route = *p.catheter_route;
-    Rail wanted = wanted_rail(p);
+    WallAround around = wall_around(p, route.shape);
+    const double yielding = std::clamp((around.load - sideways_from) / (yielding_from - sideways_from), 0.0, 1.0);
+    const Rail wanted = wanted_rail(p, yielding);
     if (wanted.points == route.laid.points && wanted.lead == route.laid.lead) return;
     const auto lie = [&](const Rail& rail) { return shape(*p.catheter, *p.catheter_state, rail); };
-    WallAround around = wall_around(p, route.shape);
     for (WallLimit& limit : around.limits) limit.force_limit *= yielding_from;
     const double shift = largest_shift(route.shape, lie(wanted));
     const double most = at_the_wall(p, around) ? shift_at_wall_mm : shift_free_mm;
@@ -204,7 +204,7 @@ bool hold_back(CatheterCommand& command, const CatheterState& state) {
 
 void settle_catheter(Parts& p) {
     choose_route(p);
-    p.catheter_route->laid = wanted_rail(p);
+    p.catheter_route->laid = wanted_rail(p, 0.0);
     p.catheter_route->shape = shape(*p.catheter, *p.catheter_state, p.catheter_route->laid);
 }
 

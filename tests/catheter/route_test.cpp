@@ -206,6 +206,37 @@ TEST(CatheterRail, AWireThatReachesFartherIsFollowed) {
     EXPECT_EQ(blend(a, b, 1.0).points, b.points);
 }
 
+TEST(CatheterRail, OverAWireTheShaftStaysWhereItWasLaidAndTheWireLeadsAhead) {
+    const auto line = [](double x, double length) {
+        std::vector<Vec3> nodes;
+        for (double z = 0.0; z <= length; z += 2.0) nodes.emplace_back(x, 0.0, z);
+        Pose mouth;
+        mouth.position = nodes.front();
+        return build_rail(mouth, nodes, {});
+    };
+    const Rail route = line(0.0, 200.0), wire = line(3.0, 150.0), laid = line(-2.0, 200.0);
+    const auto side = [&](double tip, double yielding, double arc) {
+        return laid_over_wire(laid, route, wire, tip, yielding).point(arc).x();
+    };
+    for (const double arc : {10.0, 40.0, 79.0}) {
+        EXPECT_NEAR(side(80.0, 0.0, arc), -2.0, 1e-9);
+        EXPECT_NEAR(side(80.0, 0.25, arc), -1.5, 1e-9);
+        EXPECT_NEAR(side(80.0, 1.0, arc), 0.0, 1e-9);
+    }
+    EXPECT_NEAR(side(80.0, 0.0, 115.0), 3.0, 0.05);  // along the wire
+    EXPECT_NEAR(side(80.0, 0.0, 180.0), 0.0, 0.05);  // beyond its end
+    double jump = 0.0;                               // from one to the other in 20 mm, without a corner
+    for (double arc = 70.0; arc < 115.0; arc += 0.5)
+        jump = std::max(jump, std::fabs(side(80.0, 0.0, arc + 0.5) - side(80.0, 0.0, arc)));
+    EXPECT_LT(jump, 0.3);
+    EXPECT_EQ(laid_over_wire({}, route, {}, 80.0, 0.0).points, route.points);
+    // However often it is laid anew, it stays.
+    Rail again = laid;
+    for (int k = 0; k < 200; ++k) again = laid_over_wire(again, route, wire, 80.0, 0.0);
+    EXPECT_NEAR(again.point(50.0).x(), -2.0, 1e-9);
+    EXPECT_NEAR(again.length(), laid_over_wire(laid, route, wire, 80.0, 0.0).length(), 0.5);
+}
+
 TEST(CatheterRail, ABlendIsAsLongAsWhereItGoesAndCarriesTheLead) {
     std::vector<Vec3> nodes;
     for (int i = 0; i <= 30; ++i) nodes.emplace_back(3.0, 0.0, 2.0 * i);
