@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -26,7 +25,7 @@ struct Tube {
 };
 
 struct Outcome {
-    double penetration = 0.0, sheath = 0.0, stretch = 0.0, tip_z = 0.0, jump = 0.0, solve_ms = 0.0;
+    double penetration = 0.0, sheath = 0.0, stretch = 0.0, tip_z = 0.0, jump = 0.0;
     bool finite = true;
 };
 
@@ -42,7 +41,7 @@ Outcome feed(const WireSpec& spec, const Tube& tube, const Drive& drive, double 
     const int iterations = 2;
     Outcome out;
     std::vector<RodSample> samples;
-    double time = 0.0, solves = 0.0, speed = drive.speed, turn_rate = drive.turn_rate;
+    double speed = drive.speed, turn_rate = drive.turn_rate;
     for (int step = 0; out.finite; ++step) {
         if (drive.random_substeps > 0 ? step == drive.random_substeps : rod.insertion_mm() > drive.length - 1e-6) break;
         if (drive.random_substeps > 0 && step % 25 == 0) {
@@ -76,11 +75,7 @@ Outcome feed(const WireSpec& spec, const Tube& tube, const Drive& drive, double 
                 const Vec3 moved = samples[i].position - (i < before.size() ? before[i] : samples[i].position);
                 row.slip = moved - row.normal * row.normal.dot(moved) + compliance * row.tangent_force;
             }
-            const auto begin = std::chrono::steady_clock::now();
             rod.solve(h, rows);
-            const auto end = std::chrono::steady_clock::now();
-            time += std::chrono::duration<double, std::milli>(end - begin).count();
-            solves += 1.0;
         }
         rod.finish(h);
         rod.samples(2.0, samples);
@@ -96,14 +91,12 @@ Outcome feed(const WireSpec& spec, const Tube& tube, const Drive& drive, double 
         out.finite = out.finite && std::isfinite(rod.tip().squaredNorm());
     }
     out.tip_z = rod.tip().z();
-    out.solve_ms = time / solves;
     return out;
 }
 
 void print(const char* name, const Outcome& o) {
-    std::printf(
-        "%-28s penetration %.3f mm, sheath %.0f mN, stretch %.5f, tip z %.1f, largest tip step %.2f mm, %.3f ms\n",
-        name, o.penetration, o.sheath, o.stretch, o.tip_z, o.jump, o.solve_ms);
+    std::printf("%-28s penetration %.3f mm, sheath %.0f mN, stretch %.5f, tip z %.1f, largest tip step %.2f mm\n", name,
+                o.penetration, o.sheath, o.stretch, o.tip_z, o.jump);
 }
 
 WireSpec with_floppy_tip(WireSpec spec, double ei) {
