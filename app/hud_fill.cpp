@@ -22,11 +22,12 @@ void fill_hud(const SceneSpec& scene, const Channels& c, HudData& out) {
     out.dose_area_gycm2 = c.dose_area_product_gycm2;
     out.contrast_ml = c.contrast_injected_ml;
     out.forces.clear();
-    // The bar that the paper's rule fills, then what each device presses with as a whole.
+    // The bar that the paper's rule fills and judges, then what each device presses with as a whole.
     out.forces.push_back({"force bar", c.force_bar_n, c.force_limit_n, true});
-    if (scene.wire.enabled) out.forces.push_back({"wire", c.wire_force_mn / units::newton, c.force_limit_n, false});
+    if (scene.wire.enabled)
+        out.forces.push_back({"wire, whole shaft", c.wire_force_mn / units::newton, c.force_limit_n, false});
     if (scene.catheter.enabled)
-        out.forces.push_back({"catheter", c.catheter_force_mn / units::newton, c.force_limit_n, false});
+        out.forces.push_back({"catheter, whole shaft", c.catheter_force_mn / units::newton, c.force_limit_n, false});
     out.insertion.clear();
     const auto insertion = [&](const char* name, double mm) {
         out.insertion +=

@@ -6,12 +6,13 @@
 
 namespace cathlab {
 
-/// One bar.  The bar's full length is the limit; the alarm mark stands at alarm_share of it, the stop mark at its end.
+/// One bar.  The bar's full length is the limit.  One that is judged has an alarm mark at alarm_share of it and a stop
+/// mark at its end, and takes their colours; any other is a plain reading.
 struct HudForce {
-    std::string device;  ///< "wire", "catheter"
+    std::string name;
     double force_n = 0;
     double limit_n = 0.8;
-    bool active = false;  ///< the operator's hand is on it
+    bool judged = true;
 };
 
 struct HudData {

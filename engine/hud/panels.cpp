@@ -84,19 +84,23 @@ void draw_picture_text(const Pen& pen, const HudData& d, const HudLayout& l) {
 
 void draw_force_bar(const Pen& pen, const HudForce& f, double alarm_share, const HudRect& r) {
     const double share = std::clamp(f.force_n / std::max(1e-9, f.limit_n), 0.0, 1.0);
-    const ImU32 color = share >= 1.0 ? stop : (share >= alarm_share ? alarm : calm);
+    const bool at_alarm = f.judged && share >= alarm_share, at_stop = f.judged && share >= 1.0;
+    const ImU32 color = at_stop ? stop : (at_alarm ? alarm : calm);
     ImDrawList* list = pen.list();
     list->AddRectFilled(ImVec2(r.x0, r.y0), ImVec2(r.x1, r.y1), IM_COL32(48, 56, 62, 255));
     list->AddRectFilled(ImVec2(r.x0, r.y0), ImVec2(r.x0 + static_cast<float>(share) * (r.x1 - r.x0), r.y1), color);
     const float s = pen.scale();
+    const float y = r.y0 - pen.line();
+    pen.put(r.x0, y, f.judged ? ink : faint, f.name);
+    if (!f.judged) {
+        pen.put_right(r.x1 + 3 * s, y, faint, text("%.2f N", f.force_n));
+        return;
+    }
     const float mark = r.x0 + static_cast<float>(alarm_share) * (r.x1 - r.x0);
     list->AddLine(ImVec2(mark, r.y0 - 3 * s), ImVec2(mark, r.y1 + 3 * s), alarm, 2 * s);
     list->AddRectFilled(ImVec2(r.x1, r.y0 - 4 * s), ImVec2(r.x1 + 3 * s, r.y1 + 4 * s), stop);
-    const float y = r.y0 - pen.line();
-    pen.put(r.x0, y, f.active ? ink : faint, f.active ? f.device + " <" : f.device);
-    const std::string state = share >= 1.0 ? "STOP  " : (share >= alarm_share ? "ALARM  " : "");
-    pen.put_right(r.x1 + 3 * s, y, share >= alarm_share ? color : ink,
-                  state + text("%.2f / %.2f N", f.force_n, f.limit_n));
+    const std::string state = at_stop ? "STOP  " : (at_alarm ? "ALARM  " : "");
+    pen.put_right(r.x1 + 3 * s, y, at_alarm ? color : ink, state + text("%.2f / %.2f N", f.force_n, f.limit_n));
 }
 
 }  // namespace

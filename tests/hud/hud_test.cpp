@@ -12,7 +12,7 @@ HudData two_forces(double wire_n, double catheter_n) {
     data.primary_deg = 30;
     data.kvp = 80;
     data.beam_on = true;
-    data.forces = {{"wire", wire_n, 0.8, true}, {"catheter", catheter_n, 0.8, false}};
+    data.forces = {{"wire", wire_n, 0.8, true}, {"catheter", catheter_n, 0.8, true}};
     data.insertion = "wire 412 mm";
     data.messages = {"limit"};
     return data;
@@ -53,6 +53,22 @@ TEST(ForceBar, IsFullAndInStopColourAtTheLimit) {
     const HudRect catheter = force_bar_rect(layout, 2, 1);
     EXPECT_NEAR(bar_width(list, catheter, stop), catheter.x1 - catheter.x0, 0.6);
     EXPECT_EQ(bar_width(list, catheter, calm), 0.0F);
+}
+
+TEST(ForceBar, AReadingThatIsNotJudgedNeverTakesTheStopColour) {
+    Hud hud;
+    HudLayout layout;
+    HudDrawList list;
+    HudData data = two_forces(0.1, 1.9);
+    data.forces[1].judged = false;
+    hud.draw(data, layout, list);
+    const HudRect catheter = force_bar_rect(layout, 2, 1);
+    EXPECT_NEAR(bar_width(list, catheter, calm), catheter.x1 - catheter.x0, 0.6);
+    for (const DrawVertex& v : list.vertices) {
+        if (v.y > catheter.y0 - 5.0F) {
+            EXPECT_NE(v.rgba, stop);
+        }
+    }
 }
 
 TEST(Hud, TheSameDataGiveTheSameTrianglesInsideThePicture) {
