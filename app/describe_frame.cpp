@@ -132,8 +132,8 @@ void describe_beam(const World& world, const SceneSpec& scene, const Channels& c
     fallback.isocentre = scene.c_arm.isocentre.point;
     const auto* in_world = world.first<BeamSpec>();
     const BeamSpec& beam = in_world != nullptr ? *in_world : fallback;
-    const CArmPose pose =
-        c_arm_pose(beam.c_arm, beam.isocentre, channels.primary_angle_deg, channels.secondary_angle_deg);
+    const Vec3 isocentre = isocentre_in_patient(beam, channels.table_longitudinal_mm, channels.table_lateral_mm);
+    const CArmPose pose = c_arm_pose(beam.c_arm, isocentre, channels.primary_angle_deg, channels.secondary_angle_deg);
     frame.view.source = pose.source;
     frame.view.detector_center = pose.detector;
     frame.view.right = pose.right;

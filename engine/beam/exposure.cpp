@@ -50,6 +50,8 @@ void validate(const BeamSpec& spec, const SourcePlace& where) {
 void visit(Archive& archive, BeamState& state) {
     archive.field("primary_deg", state.primary_deg);
     archive.field("secondary_deg", state.secondary_deg);
+    archive.field("table_longitudinal_mm", state.table_longitudinal_mm);
+    archive.field("table_lateral_mm", state.table_lateral_mm);
     archive.field("pedal", state.pedal);
     archive.field("water_mm", state.water_mm);
     archive.field("kvp", state.kvp);
@@ -108,11 +110,18 @@ Pulse expose(const BeamSpec& spec, double set_water_mm, double true_water_mm) {
     return pulse;
 }
 
+Vec3 isocentre_in_patient(const BeamSpec& spec, double table_longitudinal_mm, double table_lateral_mm) {
+    return spec.isocentre + Vec3(table_lateral_mm, 0.0, table_longitudinal_mm);
+}
+
 bool advance(const BeamSpec& spec, BeamState& state, const BeamCommand& command, double water_mm, std::int64_t step,
              double dt) {
     const double turn = spec.c_arm.rotation_deg_s * dt;
     state.primary_deg = towards(state.primary_deg, std::clamp(command.primary_deg, -180.0, 180.0), turn);
     state.secondary_deg = towards(state.secondary_deg, std::clamp(command.secondary_deg, -90.0, 90.0), turn);
+    const double way = spec.table_mm_s * dt;
+    state.table_longitudinal_mm = towards(state.table_longitudinal_mm, command.table_longitudinal_mm, way);
+    state.table_lateral_mm = towards(state.table_lateral_mm, command.table_lateral_mm, way);
     state.pedal = command.pedal;
     if (!command.pedal) {
         state.kerma_rate_mgy_min = 0.0;

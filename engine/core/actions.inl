@@ -11,5 +11,7 @@ CATHLAB_ACTION(distal_direction,       "deg",   linear, 0.0, -720.0, 720.0, "dir
 CATHLAB_ACTION(fluoroscopy,            "1",     hold,   0.0,    0.0,   1.0, "1 while the fluoroscopy pedal is down")
 CATHLAB_ACTION(primary_angle,          "deg",   linear, 0.0, -180.0, 180.0, "C-arm, positive = LAO (DICOM positioner primary angle)")
 CATHLAB_ACTION(secondary_angle,        "deg",   linear, 0.0,  -90.0,  90.0, "C-arm, positive = cranial (DICOM positioner secondary angle)")
+CATHLAB_ACTION(table_longitudinal,     "mm",    linear, 0.0, -1000.0, 1000.0, "table, positive = towards the feet, so that the picture shows what lies nearer the head")
+CATHLAB_ACTION(table_lateral,          "mm",    linear, 0.0, -200.0, 200.0, "table, positive = towards the patient's right, so that the picture shows what lies further left")
 CATHLAB_ACTION(contrast,               "mL/s",  hold,   0.0,    0.0,  30.0, "flow of contrast medium from the selected device's tip")
 // clang-format on

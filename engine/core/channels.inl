@@ -45,5 +45,7 @@ CATHLAB_CHANNEL(air_kerma_mgy,               "mGy",    "cumulative air kerma at 
 CATHLAB_CHANNEL(dose_area_product_gycm2,     "Gy cm2", "cumulative dose-area product")
 CATHLAB_CHANNEL(primary_angle_deg,           "deg",    "C-arm, positive = LAO (DICOM positioner primary angle)")
 CATHLAB_CHANNEL(secondary_angle_deg,         "deg",    "C-arm, positive = cranial (DICOM positioner secondary angle)")
+CATHLAB_CHANNEL(table_longitudinal_mm,       "mm",     "table, positive = towards the feet: the picture shows what lies nearer the head")
+CATHLAB_CHANNEL(table_lateral_mm,            "mm",     "table, positive = towards the patient's right: the picture shows what lies further left")
 CATHLAB_CHANNEL(contrast_injected_ml,        "mL",     "contrast medium injected since the start")
 // clang-format on

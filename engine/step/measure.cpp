@@ -103,6 +103,8 @@ void measure(Parts& p, const Input& /*input*/, const StepSums& sums, Channels& c
         c.dose_area_product_gycm2 = beam.dose_area_gycm2;
         c.primary_angle_deg = beam.primary_deg;
         c.secondary_angle_deg = beam.secondary_deg;
+        c.table_longitudinal_mm = beam.table_longitudinal_mm;
+        c.table_lateral_mm = beam.table_lateral_mm;
     }
     if (p.contrast) c.contrast_injected_ml = p.contrast_state->injected_ml;
 
@@ -122,13 +124,16 @@ void measure(Parts& p, const Input& /*input*/, const StepSums& sums, Channels& c
 void advance_imaging(Parts& p, const Input& input, double dt) {
     if (p.beam) {
         p.stage("beam");
+        const BeamState& now = *p.beam_state;
         const CArmPose pose =
-            c_arm_pose(p.beam->c_arm, p.beam->isocentre, p.beam_state->primary_deg, p.beam_state->secondary_deg);
+            c_arm_pose(p.beam->c_arm, isocentre_in_patient(*p.beam, now.table_longitudinal_mm, now.table_lateral_mm),
+                       now.primary_deg, now.secondary_deg);
         const bool pedal = input.fluoroscopy >= 0.5;
         // The thickness is looked up where it is needed: while the beam is off nothing depends on it.
         const double water_mm = pedal && p.thickness ? p.thickness->water_mm(p.beam->c_arm, pose) : 0.0;
-        advance(*p.beam, *p.beam_state, {input.primary_angle, input.secondary_angle, pedal}, water_mm,
-                p.world->step_index - 1, dt);
+        advance(*p.beam, *p.beam_state,
+                {input.primary_angle, input.secondary_angle, pedal, input.table_longitudinal, input.table_lateral},
+                water_mm, p.world->step_index - 1, dt);
     }
     if (p.contrast) {
         p.stage("contrast");

@@ -87,6 +87,22 @@ TEST(Beam, TheArmTurnsNoFasterThanItsMotor) {
     EXPECT_NEAR(state.secondary_deg, -25.0, 1e-9);
 }
 
+TEST(Beam, TheTableGoesNoFasterThanItsMotorAndShowsWhatLiesNearerTheHead) {
+    BeamSpec spec;
+    spec.isocentre = Vec3(5.0, 6.0, 7.0);
+    BeamState state = initial_state(spec);
+    const BeamCommand wanted{0.0, 0.0, false, 200.0, -30.0};
+    for (int step = 0; step < 50; ++step) advance(spec, state, wanted, 200.0, step, 0.02);
+    EXPECT_NEAR(state.table_longitudinal_mm, 150.0, 1e-9);
+    EXPECT_DOUBLE_EQ(state.table_lateral_mm, -30.0);
+    const Vec3 middle = isocentre_in_patient(spec, state.table_longitudinal_mm, state.table_lateral_mm);
+    EXPECT_NEAR((middle - Vec3(-25.0, 6.0, 157.0)).norm(), 0.0, 1e-9);
+    const CArmPose pose = c_arm_pose(spec.c_arm, middle, 30.0, -10.0);
+    const Vec2 shadow = project(spec.c_arm, pose, middle);
+    EXPECT_NEAR(shadow.x(), 0.5 * (spec.c_arm.columns - 1), 1e-9);
+    EXPECT_NEAR(shadow.y(), 0.5 * (spec.c_arm.rows - 1), 1e-9);
+}
+
 TEST(Beam, NonsenseIsRefused) {
     BeamSpec spec;
     EXPECT_NO_THROW(validate(spec));

@@ -17,9 +17,9 @@ struct ExpectedHash {
     std::uint64_t hash;
 };
 constexpr std::array<ExpectedHash, 3> expected_hashes{{
-    {"tube_wire", 0xd4d9ca0470f7b77f},
-    {"tube_catheter", 0xca7360f4ed7f1f67},
-    {"fork", 0x5441a720fa93b320},
+    {"tube_wire", 0x5cd82db68d51a059},
+    {"tube_catheter", 0xb9868c8dfa97f634},
+    {"fork", 0xeae8110821ec0269},
 }};
 
 constexpr int steps = 150;
