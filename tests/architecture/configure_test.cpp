@@ -47,8 +47,9 @@ endforeach()
 
     /// Everything that cmake said; its exit code in status_.
     std::string configure() {
-        const std::string command = std::string(CATHLAB_CMAKE) + " -DCMAKE_CXX_COMPILER_WORKS=1 -S " + root_.string() +
-                                    " -B " + (root_ / "build").string() + " 2>&1";
+        const std::string command = std::string(CATHLAB_CMAKE) + " -G '" + CATHLAB_GENERATOR +
+                                    "' -DCMAKE_CXX_COMPILER_WORKS=1 -S " + root_.string() + " -B " +
+                                    (root_ / "build").string() + " 2>&1";
         std::string said;
         FILE* pipe = popen(command.c_str(), "r");
         if (pipe == nullptr) return "cmake could not be started";
