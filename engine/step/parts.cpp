@@ -17,13 +17,12 @@ Parts find_parts(World& world) {
     p.wall_state = world.first<SoftBodyState>();
     p.wall_scratch = world.first<SoftBodyScratch>();
     p.surface_state = world.first<LumenSurfaceState>();
-    p.centreline = world.first<MovedCentreline>();
     p.annulus = world.first<AnnulusRing>();
     p.supports = world.first<SupportState>();
     p.contacts = world.first<ContactSet>();
     CATHLAB_CHECK(p.settings && p.events && p.force_bar, "the world lacks its settings, event log or force bar");
-    CATHLAB_CHECK(p.anatomy && p.wall && p.surface && p.wall_state && p.wall_scratch && p.surface_state &&
-                      p.centreline && p.supports && p.contacts,
+    CATHLAB_CHECK(p.anatomy && p.wall && p.surface && p.wall_state && p.wall_scratch && p.surface_state && p.supports &&
+                      p.contacts,
                   "the world lacks a part of its vessel");
 
     p.wire = world.first<Rod>();

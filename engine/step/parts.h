@@ -35,12 +35,6 @@ namespace cathlab {
 inline constexpr Index wire_device = 0;
 inline constexpr Index catheter_device = 1;
 
-/// Component of the vessel: the centre-line's nodes hang on the wall, so that camera and bolus follow it.
-struct MovedCentreline {
-    PointBinding binding;
-    std::vector<Vec3> positions;  ///< (nodes) now, mm; follows from the wall, not hashed
-};
-
 /// Component of the vessel: the particles whose mean displacement along the heart's axis is the annulus' motion.
 struct AnnulusRing {
     std::vector<Index> particles;
@@ -114,7 +108,6 @@ struct Parts {
     SoftBodyScratch* wall_scratch = nullptr;
     const LumenSurfaceModel* surface = nullptr;
     LumenSurfaceState* surface_state = nullptr;
-    MovedCentreline* centreline = nullptr;
     AnnulusRing* annulus = nullptr;
     SupportState* supports = nullptr;
     ContactSet* contacts = nullptr;

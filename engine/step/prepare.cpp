@@ -10,7 +10,6 @@ namespace {
 
 // A node hangs on the ring of particles around it: more than a point of the surface needs, so that it stays in the
 // middle.
-constexpr int centreline_particles = 16;
 // Particles whose mean motion is the annulus' motion: those within this distance of the ring.
 constexpr double ring_mm = 2.5;
 // The cylinder may touch the root this far beyond the annulus, along the axis, mm.
@@ -55,10 +54,6 @@ void prepare(World& world) {
     contact.rows_per_sample = 3;
     contact.recovery_mm = 8.0;
     world.add(vessel, ContactSet(contact));
-    auto& centreline = world.add(vessel, MovedCentreline{});
-    for (const CentrelineNode& node : (*anatomy)->centreline.nodes) centreline.positions.push_back(node.position);
-    centreline.binding = bind_points(**wall, centreline.positions, centreline_particles, false);
-    evaluate_all(centreline.binding, world.first<SoftBodyState>()->x, centreline.positions, world.workers());
     update(**world.first<Shared<LumenSurfaceModel>>(), world.first<SoftBodyState>()->x,
            *world.first<LumenSurfaceState>(), world.workers());
 

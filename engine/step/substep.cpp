@@ -147,7 +147,6 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
 
     // 1. Commands and supports: what moves by itself.
     p.stage("catheter");
-    evaluate_all(p.centreline->binding, state.x, p.centreline->positions, workers);
     CatheterShape catheter_before;
     if (p.catheter) {
         catheter_before = p.catheter_route->shape;
