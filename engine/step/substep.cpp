@@ -72,8 +72,9 @@ void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<Ch
 }
 
 // How deep the samples that press hard are in the wall as the last pass left it.
-double pressed_depth(Parts& p, const DeviceSamples& samples, const StepSums& sums) {
+double pressed_depth(Parts& p, const DeviceSamples& samples, StepSums& sums) {
     if (!p.contacts->presses(samples.list, pressed_mn, front_pressed_mn)) return 0.0;
+    sums.surface_follows = true;
     update(*p.surface, p.wall_state->x, *sums.surface_near, *p.surface_state, p.world->workers());
     return p.contacts->true_depth(*p.surface, *p.surface_state, samples.list, pressed_mn, front_pressed_mn);
 }
@@ -84,7 +85,7 @@ void find_contacts(Parts& p, DeviceSamples& samples, std::span<const Vec3> parti
     refresh_samples(p, samples);
     const Workers& workers = p.world->workers();
     if (sums.surface_near) {
-        update(*p.surface, particles, *sums.surface_near, *p.surface_state, workers);
+        if (!sums.surface_follows) update(*p.surface, particles, *sums.surface_near, *p.surface_state, workers);
     } else {
         update(*p.surface, particles, *p.surface_state, workers);
         std::vector<Vec3> places;
@@ -179,6 +180,7 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
     WallPart touched;  // by devices and heart: passes after the first look at the wall around them alone
     for (int pass = 0; pass < passes; ++pass) {
         p.stage("softbody");
+        sums.surface_follows = false;
         if (pass == 0) {
             extra.gather(p);
             solve_and_apply(wall, state, scratch, h, workers);
@@ -235,6 +237,7 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
         p.stage("contact");
         push_out(*p.surface, *sums.surface_near, *p.contacts, samples.list, pushed_out_mm, scratch.compliance, state.x,
                  *p.surface_state, workers);
+        sums.surface_follows = false;
         p.contacts->refresh(samples.list, state.x);
     }
     p.stage("rod");
