@@ -192,7 +192,7 @@ Rail laid_over_wire(const Rail& laid, const Rail& route, const Rail& wire, doubl
         kept_mm = laid.arc[i];
     }
     const auto ahead = [&](double arc) -> Vec3 {
-        const Vec3 on = route.point(arc);
+        Vec3 on = route.point(arc);
         if (wire.points.empty()) return on;
         return on + wire_lead(wire.length(), arc, handing_over_mm) * (wire.point(arc) - on);
     };
