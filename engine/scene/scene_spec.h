@@ -54,7 +54,7 @@ struct SceneWall {
     double surrounding_kpa_per_mm = 0.02;     ///< elastic foundation: tissue around the vessels
     double surrounding_kpa_s_per_mm = 0.002;  ///< its damping
     double max_speed_mm_s = 150.0;
-    std::string precision = "float";          ///< of the cluster fits; positions are double in either
+    std::string precision = "float";  ///< of the cluster fits; positions are double in either
     double friction = 0.1;
     std::vector<SceneWallRegion> regions;
 };

@@ -3,10 +3,10 @@
 
 #include "ball.h"
 #include "contact/contact_set.h"
-#include "device_samples.h"
 #include "contact/penetration.h"
 #include "contact/push_out.h"
 #include "core/deterministic_math.h"
+#include "device_samples.h"
 #include "shapes.h"
 #include "softbody/solver.h"
 #include "softbody/tube.h"
