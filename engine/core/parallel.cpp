@@ -17,22 +17,50 @@ namespace {
 // after its caller came and end before it goes on.  It is told so here, and no more: a race of two bodies is still
 // found.
 #ifdef __SANITIZE_THREAD__
-void hand_over(char& at) {
-    __tsan_release(&at);
+void hand_over(const void* at) {
+    __tsan_release(const_cast<void*>(at));
 }
-void take_over(char& at) {
-    __tsan_acquire(&at);
+void take_over(const void* at) {
+    __tsan_acquire(const_cast<void*>(at));
 }
 #else
-void hand_over(char&) {}
-void take_over(char&) {}
+void hand_over(const void*) {}
+void take_over(const void*) {}
 #endif
 
 /// Does so at the end of its block, an exception's too.
 struct AtEnd {
-    void (*what)(char&);
-    char& at;
+    void (*what)(const void*);
+    const void* at;
     ~AtEnd() { what(at); }
+};
+
+/// One loop, as its caller sees it.
+struct Loop {
+    const std::function<void(std::size_t, std::size_t)>* body;
+    char begun = 0, ended = 0;
+};
+
+/// What the scheduler copies for every part of a loop that it splits off: one thread writes the copy, another runs it.
+class Part {
+public:
+    explicit Part(Loop& loop) : loop_(&loop) { hand_over(this); }
+    Part(const Part& other) : loop_(other.loop()) { hand_over(this); }
+    Part& operator=(const Part&) = delete;
+    ~Part() = default;
+    void operator()(const tbb::blocked_range<std::size_t>& range) const {
+        Loop& of = *loop();
+        take_over(&of.begun);
+        const AtEnd after{hand_over, &of.ended};
+        (*of.body)(range.begin(), range.end());
+    }
+
+private:
+    Loop* loop() const {
+        take_over(this);
+        return loop_;
+    }
+    Loop* loop_;
 };
 
 }  // namespace
@@ -57,17 +85,12 @@ void Workers::for_ranges(std::size_t count, std::size_t grain,
     }
     // isolate: a worker that waits here must not pick up another world's outer task, which could deadlock on locks
     // above us.
-    char begun = 0, ended = 0;
-    const AtEnd after_all{take_over, ended};
-    hand_over(begun);
+    Loop loop{&body};
+    const AtEnd after_all{take_over, &loop.ended};
+    hand_over(&loop.begun);
     pool_->arena.execute([&] {
         tbb::this_task_arena::isolate([&] {
-            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, std::max<std::size_t>(1, grain)),
-                              [&](const tbb::blocked_range<std::size_t>& r) {
-                                  take_over(begun);
-                                  const AtEnd after{hand_over, ended};
-                                  body(r.begin(), r.end());
-                              });
+            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, std::max<std::size_t>(1, grain)), Part(loop));
         });
     });
 }
