@@ -52,7 +52,7 @@ std::vector<double> pressure_strain(const PressureRig& rig, const WallParameters
         for (int look = 0; look < most_looks && !still; ++look) {
             const std::vector<Vec3> before = state.x;
             for (int k = 0; k < steps_a_look; ++k) {
-                predict(model, state, scratch, step_s, {}, {}, workers);
+                predict(model, state, scratch, step_s, {}, workers);
                 std::copy(load.begin(), load.end(), scratch.force.begin());
                 for (int n = 0; n < iterations; ++n) {
                     solve_goals(model, state, scratch, workers);

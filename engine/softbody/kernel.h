@@ -28,6 +28,20 @@ using Fit = void (*)(const void* groups, const double* x, double* rotation, doub
 /// goal_i = mean over its clusters of R X_i + t for particles [begin, end).
 using Gather = void (*)(const std::int32_t* start, const std::int32_t* cluster, const double* transform,
                         const double* rest, double* goal, std::size_t begin, std::size_t end);
+/// What a walk over the particles reads and writes (n, or n x 3); what the model does not have is null.
+struct Particles {
+    const double *mass, *stiffness, *stiffness_scale, *support, *drag, *rest;
+    const std::uint8_t* fixed;
+    const double *support_before, *support_after;  ///< displacements of the supports; null: they stand as at rest
+    double *x, *v, *start, *predicted, *force, *compliance;
+    const double *goal, *last_goal;
+    double h, support_share, farthest, towards_goal;
+};
+using Walk = void (*)(const Particles& p, std::size_t begin, std::size_t end);
+
+/// Takes x back to the ball of radius `farthest` around start (3 numbers each) where it left it.
+void limit_way(const double* start, double farthest, double* x);
+
 /// Rotations of eight matrices (9 x 8: a00, a01, .. a22), started from and written to quaternion (4 x 8: w, x, y, z).
 using Polar = void (*)(const double* matrix, double* quaternion);
 
@@ -36,6 +50,9 @@ struct Set {
     Fit fit_double;  ///< groups: Groups<double>
     Fit fit_float;   ///< groups: Groups<float>
     Gather gather;
+    Walk predict;  ///< solver.h says what each of the three does
+    Walk apply;
+    Walk finish;
     Polar polar_double;
     Polar polar_float;
 };

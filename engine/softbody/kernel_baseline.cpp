@@ -10,8 +10,17 @@ namespace {
 }  // namespace
 
 const Set& baseline() {
-    static const Set set{"SSE2", fit_double, fit_float, gather_goals, polar_of_double, polar_of_float};
+    static const Set set{"SSE2",          fit_double,       fit_float,       gather_goals,  predict_particles,
+                         apply_particles, finish_particles, polar_of_double, polar_of_float};
     return set;
+}
+
+void limit_way(const double* start, double farthest, double* x) {
+    const double way[3] = {x[0] - start[0], x[1] - start[1], x[2] - start[2]};
+    const double squared = way[0] * way[0] + (way[1] * way[1] + way[2] * way[2]);
+    if (!(squared > farthest * farthest)) return;
+    const double share = farthest / __builtin_sqrt(squared);
+    for (int k = 0; k < 3; ++k) x[k] = start[k] + share * way[k];
 }
 
 const Set& best() {

@@ -49,3 +49,4 @@ TARGET static inline void places(const double* from, const std::int32_t* particl
 #define GATHER gather_goals
 #include "softbody/gather.inl"
 #undef GATHER
+#include "softbody/particles.inl"

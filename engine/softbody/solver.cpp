@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "core/check.h"
 
@@ -21,12 +20,14 @@ constexpr double largest_guess_mm = 0.5;  // of a force's share in the start of 
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
-const double* numbers(const std::vector<Vec3>& v) {
+const double* numbers(std::span<const Vec3> v) {
     return v.empty() ? nullptr : v.front().data();
 }
-
-double stiffness(const SoftBodyModel& model, const SoftBodyScratch& scratch, std::size_t i) {
-    return scratch.stiffness_scale.empty() ? model.stiffness[i] : scratch.stiffness_scale[i] * model.stiffness[i];
+double* numbers(std::vector<Vec3>& v) {
+    return v.empty() ? nullptr : v.front().data();
+}
+const double* numbers(const std::vector<double>& v) {
+    return v.empty() ? nullptr : v.data();
 }
 
 /// The groups of clusters in the model's precision.
@@ -72,23 +73,30 @@ void gather(const SoftBodyModel& model, SoftBodyScratch& scratch, const kernel::
                scratch.goal.front().data(), begin, end);
 }
 
-void limit_way(const Vec3& start, double farthest, Vec3& x) {
-    const Vec3 way = x - start;
-    const double squared = way.squaredNorm();
-    if (squared > farthest * farthest) x = start + (farthest / std::sqrt(squared)) * way;
-}
-
-void apply_to(const SoftBodyModel& model, SoftBodyState& state, const SoftBodyScratch& scratch, double h,
-              std::size_t begin, std::size_t end) {
-    const double per_h2 = 1.0 / h / h;
-    const double farthest = model.max_speed_mm_s * h;
-    for (std::size_t i = begin; i < end; ++i) {
-        if (model.fixed[i]) continue;
-        const double inertia = model.mass[i] * per_h2;
-        state.x[i] = scratch.compliance[i] * (inertia * scratch.predicted[i] +
-                                              stiffness(model, scratch, i) * scratch.goal[i] + scratch.force[i]);
-        limit_way(scratch.start[i], farthest, state.x[i]);
+kernel::Particles particles(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h) {
+    const std::size_t n = model.size();
+    kernel::Particles p{};
+    p.mass = model.mass.data();
+    p.stiffness = model.stiffness.data();
+    p.stiffness_scale = numbers(scratch.stiffness_scale);
+    p.support = numbers(model.support);
+    p.drag = numbers(model.drag);
+    p.rest = numbers(model.rest);
+    p.fixed = model.fixed.data();
+    p.x = numbers(state.x);
+    p.v = numbers(state.v);
+    p.start = numbers(scratch.start);
+    p.predicted = numbers(scratch.predicted);
+    p.force = numbers(scratch.force);
+    p.compliance = scratch.compliance.data();
+    if (scratch.goal.size() == n) {
+        p.goal = numbers(scratch.goal);
+        p.last_goal = numbers(state.goal);
     }
+    p.h = h;
+    p.farthest = model.max_speed_mm_s * h;
+    p.towards_goal = model.damping_per_s * h / (1.0 + model.damping_per_s * h);
+    return p;
 }
 
 /// Linear and angular momentum of a free body, the latter about `origin`.
@@ -103,13 +111,8 @@ void momentum_of(const SoftBodyModel& model, const SoftBodyState& state, const F
     }
 }
 
-// Fixed particles stay where they are, and what is around the others stands as at rest.
-struct Standing {};
-
-template <class Target>
 void predict_with(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
-                  const Target& target, std::span<const Vec3> external_force, const Workers& workers) {
-    constexpr bool standing = std::is_same_v<Target, Standing>;
+                  const SupportMotion* supports, std::span<const Vec3> external_force, const Workers& workers) {
     const std::size_t n = model.size();
     CATHLAB_CHECK(h > 0.0, "a substep must be longer than nothing");
     CATHLAB_CHECK(external_force.empty() || external_force.size() == n, "one external force a particle");
@@ -126,47 +129,25 @@ void predict_with(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScra
     scratch.force.resize(n);
     scratch.predicted.resize(n);
     scratch.compliance.resize(n);
-    const double per_h = 1.0 / h, per_h2 = per_h / h;
+    kernel::Particles walked = particles(model, state, scratch, h);
+    if (supports) {
+        walked.support_before = numbers(supports->before);
+        walked.support_after = numbers(supports->after);
+        walked.support_share = supports->share;
+    }
+    const kernel::Set& set = kernel::best();
     workers.for_ranges(n, particle_grain, [&](std::size_t begin, std::size_t end) {
+        set.predict(walked, begin, end);
+        if (external_force.empty()) return;
         for (std::size_t i = begin; i < end; ++i) {
-            const Vec3 x = state.x[i];
-            scratch.start[i] = x;
-            scratch.force[i].setZero();
-            Vec3 stand = model.rest[i];
-            if constexpr (!standing) stand = target(i);
-            if (model.fixed[i]) {
-                scratch.predicted[i] = standing ? x : stand;
-                state.x[i] = scratch.predicted[i];
-                scratch.compliance[i] = 0.0;
-                continue;
-            }
-            const double inertia = model.mass[i] * per_h2;
-            const double share = 1.0 / inertia;
-            Vec3 coasted = x + h * state.v[i];
-            Vec3 predicted = coasted;
-            if (!external_force.empty()) {
-                const Vec3 pull = external_force[i] / inertia;
-                const double length = pull.norm();
-                predicted += pull;
-                // Only a free body has to fall with its forces from the start: a held one would start its fit
-                // displaced, and a few passes never take that back.
-                if (!model.free_bodies.empty())
-                    coasted += length > largest_guess_mm ? Vec3(pull * (largest_guess_mm / length)) : pull;
-            }
-            // The foundation's springs and dashpots are as implicit as the goals; they go into the right-hand side with
-            // x~.
-            double around = 0.0;
-            if (!model.support.empty()) {
-                around += model.support[i];
-                predicted += model.support[i] * share * stand;
-            }
-            if (!model.drag.empty()) {
-                around += model.drag[i] * per_h;
-                predicted += model.drag[i] * per_h * share * x;
-            }
-            scratch.predicted[i] = predicted;
-            state.x[i] = coasted;
-            scratch.compliance[i] = 1.0 / (inertia + around + stiffness(model, scratch, i));
+            if (model.fixed[i]) continue;
+            const Vec3 pull = external_force[i] / (model.mass[i] / h / h);
+            scratch.predicted[i] += pull;
+            // Only a free body has to fall with its forces from the start: a held one would start its fit displaced,
+            // and a few passes never take that back.
+            if (model.free_bodies.empty()) continue;
+            const double length = pull.norm();
+            state.x[i] += length > largest_guess_mm ? Vec3(pull * (largest_guess_mm / length)) : pull;
         }
     });
 }
@@ -219,26 +200,15 @@ SoftBodyState rest_state(const SoftBodyModel& model) {
 }
 
 void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
-             std::span<const Vec3> fixed_target, std::span<const Vec3> external_force, const Workers& workers) {
-    CATHLAB_CHECK(fixed_target.empty() || fixed_target.size() == model.size(), "one target a particle");
-    if (fixed_target.empty())
-        predict_with(model, state, scratch, h, Standing{}, external_force, workers);
-    else
-        predict_with(
-            model, state, scratch, h, [&](std::size_t i) { return fixed_target[i]; }, external_force, workers);
+             std::span<const Vec3> external_force, const Workers& workers) {
+    predict_with(model, state, scratch, h, nullptr, external_force, workers);
 }
 
 void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
              const SupportMotion& supports, std::span<const Vec3> external_force, const Workers& workers) {
     CATHLAB_CHECK(supports.before.size() == model.size() && supports.after.size() == model.size(),
                   "one displacement a particle");
-    predict_with(
-        model, state, scratch, h,
-        [&](std::size_t i) {
-            return Vec3(model.rest[i] + (1.0 - supports.share) * supports.before[i] +
-                        supports.share * supports.after[i]);
-        },
-        external_force, workers);
+    predict_with(model, state, scratch, h, &supports, external_force, workers);
 }
 
 void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
@@ -253,12 +223,13 @@ void solve_and_apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyS
     CATHLAB_CHECK(scratch.force.size() == model.size(), "predict comes before");
     fit_all(model, state, scratch, workers);
     const kernel::Set& set = kernel::best();
+    const kernel::Particles walked = particles(model, state, scratch, h);
     workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
         // Piece by piece, so that the goals are still at hand when they are applied.
         for (std::size_t first = begin; first < end; first += piece) {
             const std::size_t last = std::min(first + piece, end);
             gather(model, scratch, set, first, last);
-            apply_to(model, state, scratch, h, first, last);
+            set.apply(walked, first, last);
         }
     });
 }
@@ -267,14 +238,16 @@ void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& sc
            const Workers& workers) {
     CATHLAB_CHECK(scratch.force.size() == model.size() && scratch.goal.size() == model.size(),
                   "predict and solve_goals come before apply");
+    const kernel::Particles walked = particles(model, state, scratch, h);
     workers.for_ranges(model.size(), particle_grain,
-                       [&](std::size_t begin, std::size_t end) { apply_to(model, state, scratch, h, begin, end); });
+                       [&](std::size_t begin, std::size_t end) { kernel::best().apply(walked, begin, end); });
 }
 
 void limit_speed(const SoftBodyModel& model, SoftBodyState& state, const SoftBodyScratch& scratch, double h,
                  std::span<const Index> particles) {
     for (const Index i : particles)
-        if (!model.fixed[at(i)]) limit_way(scratch.start[at(i)], model.max_speed_mm_s * h, state.x[at(i)]);
+        if (!model.fixed[at(i)])
+            kernel::limit_way(scratch.start[at(i)].data(), model.max_speed_mm_s * h, state.x[at(i)].data());
 }
 
 WallPart part_around(const SoftBodyModel& model, std::span<const Index> touched) {
@@ -321,24 +294,20 @@ void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& sc
            const Workers& workers) {
     CATHLAB_CHECK(scratch.force.size() == model.size() && scratch.goal.size() == model.size(),
                   "predict and solve_goals come before apply");
+    const kernel::Set& set = kernel::best();
+    const kernel::Particles walked = particles(model, state, scratch, h);
     workers.for_ranges(part.runs.size(), run_grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k)
-            apply_to(model, state, scratch, h, at(part.runs[k].first), at(part.runs[k].second));
+        for (std::size_t k = begin; k < end; ++k) set.apply(walked, at(part.runs[k].first), at(part.runs[k].second));
     });
 }
 
 void finish(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
             const Workers& workers) {
-    const bool has_goals = scratch.goal.size() == model.size();
-    const double towards = model.damping_per_s * h / (1.0 + model.damping_per_s * h);
-    workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            state.v[i] = (state.x[i] - scratch.start[i]) / h;
-            if (!has_goals) continue;
-            if (!model.fixed[i]) state.v[i] += towards * ((scratch.goal[i] - state.goal[i]) / h - state.v[i]);
-        }
-    });
-    if (has_goals) state.goal.swap(scratch.goal);  // the next fit writes all of them anew
+    const kernel::Particles walked = particles(model, state, scratch, h);
+    workers.for_ranges(model.size(), particle_grain,
+                       [&](std::size_t begin, std::size_t end) { kernel::best().finish(walked, begin, end); });
+    // The next fit writes all of them anew.
+    if (walked.goal) state.goal.swap(scratch.goal);  // the next fit writes all of them anew
     for (std::size_t b = 0; b < model.free_bodies.size(); ++b) {
         const FreeBody& body = model.free_bodies[b];
         const Vec3 origin = scratch.start[at(body.particles.front())];

@@ -42,13 +42,6 @@ struct SoftBodyScratch {
 
 SoftBodyState rest_state(const SoftBodyModel& model);
 
-/// x~ = x + h v + h^2 f / m; fixed particles go to fixed_target (one a particle; empty: they stay), and what surrounds
-/// the wall stands there too (empty: at rest).  Clears scratch.force and writes scratch.compliance.  The first fit
-/// starts from x~, except that a force moves this start by 0.5 mm at most: a hard local pull would tear the clusters'
-/// fits apart for nothing, and the iteration has the same end from either start.
-void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
-             std::span<const Vec3> fixed_target, std::span<const Vec3> external_force, const Workers& workers);
-
 /// Where supports stand: rest + displacement, on the way from `before` to `after` (n each, mm), share 0 to 1.
 struct SupportMotion {
     std::span<const Vec3> before, after;
@@ -57,6 +50,15 @@ struct SupportMotion {
     explicit SupportMotion(std::span<const Vec3> from, std::span<const Vec3> to, double part)
         : before(from), after(to), share(part) {}
 };
+
+/// x~ = x + h v + h^2 f / m, external_force one a particle or empty.  Fixed particles stay where they are, and what
+/// surrounds the wall stands as at rest.  Clears scratch.force and writes scratch.compliance.  The first fit starts
+/// from x~, except that a force moves this start by 0.5 mm at most: a hard local pull would tear the clusters' fits
+/// apart for nothing, and the iteration has the same end from either start.
+void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+             std::span<const Vec3> external_force, const Workers& workers);
+
+/// The same; fixed particles go to where their supports stand, and what surrounds the wall stands there too.
 void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
              const SupportMotion& supports, std::span<const Vec3> external_force, const Workers& workers);
 

@@ -32,7 +32,7 @@ struct SoftWall {
         update(surface, state.x, surface_state, workers);
     }
     void predict_all() {
-        predict(model, state, scratch, h, {}, {}, workers);
+        predict(model, state, scratch, h, {}, workers);
         update(surface, state.x, surface_state, workers);
     }
     void detect(ContactSet& contacts, std::span<const DeviceSample> samples) {

@@ -124,11 +124,14 @@ TEST(Equilibrium, SinglePrecisionFitsMoveTheWallAlike) {
 
 TEST(Equilibrium, FixedParticlesFollowTheirTargets) {
     rig::Wall wall = held_tube();
-    std::vector<Vec3> target = wall.model.rest;
+    std::vector<Vec3> target = wall.model.rest, risen = target;
     for (int k = 1; k <= 600; ++k) {
         const double rise = std::min(1.0, k / 200.0) * 5.0;
-        for (std::size_t i = 0; i < target.size(); ++i) target[i] = wall.model.rest[i] + Vec3(rise, 0, 0);
-        predict(wall.model, wall.state, wall.scratch, 0.004, target, {}, wall.workers);
+        for (std::size_t i = 0; i < target.size(); ++i) {
+            risen[i] = Vec3(rise, 0, 0);
+            target[i] = wall.model.rest[i] + risen[i];
+        }
+        predict(wall.model, wall.state, wall.scratch, 0.004, SupportMotion(risen, risen, 1.0), {}, wall.workers);
         for (int n = 0; n < 2; ++n) {
             solve_goals(wall.model, wall.state, wall.scratch, wall.workers);
             apply(wall.model, wall.state, wall.scratch, 0.004, wall.workers);

@@ -40,7 +40,7 @@ struct Wall {
     explicit Wall(SoftBodyModel m, int threads = 1) : model(std::move(m)), state(rest_state(model)), workers(threads) {}
 
     void step(double h, int iterations, std::span<const Vec3> external = {}, std::span<const Vec3> row_force = {}) {
-        predict(model, state, scratch, h, {}, external, workers);
+        predict(model, state, scratch, h, external, workers);
         std::copy(row_force.begin(), row_force.end(), scratch.force.begin());
         for (int k = 0; k < iterations; ++k) {
             solve_goals(model, state, scratch, workers);

@@ -29,7 +29,7 @@ TEST(Solver, AtTheReferenceStepOnePassIsThePapersUpdate) {
     Wall wall(rig::free_tube());
     rig::shake(wall, 50.0);
     const double h = reference_step_s;
-    predict(wall.model, wall.state, wall.scratch, h, {}, {}, wall.workers);
+    predict(wall.model, wall.state, wall.scratch, h, {}, wall.workers);
     solve_goals(wall.model, wall.state, wall.scratch, wall.workers);
     const std::vector<Vec3> before = wall.scratch.predicted;
     apply(wall.model, wall.state, wall.scratch, h, wall.workers);
@@ -69,7 +69,7 @@ TEST(Solver, NoParticleGoesFasterThanItsLimit) {
     EXPECT_LE(farthest, 150.0 * h * (1.0 + 1e-12));
     EXPECT_GT(farthest, 140.0 * h);
     // Others may move particles between passes: the same limit, counted from the substep's start.
-    predict(wall.model, wall.state, wall.scratch, h, {}, {}, wall.workers);
+    predict(wall.model, wall.state, wall.scratch, h, {}, wall.workers);
     wall.state.x[7] = wall.scratch.start[7] + Vec3(0.0, 5.0, 0.0);
     const std::vector<Index> moved{7, 7};
     limit_speed(wall.model, wall.state, wall.scratch, h, moved);
@@ -228,7 +228,7 @@ TEST(Solver, APartOfTheWallIsSolvedAsTheWholeWouldBe) {
     Wall wall(rig::free_tube());
     rig::shake(wall, 50.0);
     const double h = 0.004;
-    predict(wall.model, wall.state, wall.scratch, h, {}, {}, wall.workers);
+    predict(wall.model, wall.state, wall.scratch, h, {}, wall.workers);
     solve_goals(wall.model, wall.state, wall.scratch, wall.workers);
     apply(wall.model, wall.state, wall.scratch, h, wall.workers);
     const std::vector<Index> touched{3, 3, 40};
