@@ -41,13 +41,14 @@ struct Loop {
     char begun = 0, ended = 0;
 };
 
-/// What the scheduler copies for every part of a loop that it splits off: one thread writes the copy, another runs it.
+/// What the scheduler copies for every part of a loop that it splits off: one thread writes the copy, where another's
+/// may have lain, and another runs it.
 class Part {
 public:
-    explicit Part(Loop& loop) : loop_(&loop) { hand_over(this); }
-    Part(const Part& other) : loop_(other.loop()) { hand_over(this); }
+    explicit Part(Loop& loop) { set(loop); }
+    Part(const Part& other) { set(*other.loop()); }
     Part& operator=(const Part&) = delete;
-    ~Part() = default;
+    ~Part() { hand_over(this); }
     void operator()(const tbb::blocked_range<std::size_t>& range) const {
         Loop& of = *loop();
         take_over(&of.begun);
@@ -56,6 +57,11 @@ public:
     }
 
 private:
+    void set(Loop& loop) {
+        take_over(this);
+        loop_ = &loop;
+        hand_over(this);
+    }
     Loop* loop() const {
         take_over(this);
         return loop_;

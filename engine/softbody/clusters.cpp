@@ -14,7 +14,7 @@ namespace {
 
 constexpr double dart_radius = 0.83;  // of the local spacing; leaves spacing^2 to each centre, as for particles
 constexpr std::uint64_t centre_seed = 0x636C7573746572;
-constexpr std::size_t sorting_block = 64;  // clusters that are near in memory and sorted by size among themselves
+constexpr std::size_t sorting_block = 16;  // clusters that are near in memory and sorted by size among themselves
 
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);

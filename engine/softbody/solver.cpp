@@ -250,26 +250,49 @@ void limit_speed(const SoftBodyModel& model, SoftBodyState& state, const SoftBod
             kernel::limit_way(scratch.start[at(i)].data(), model.max_speed_mm_s * h, state.x[at(i)].data());
 }
 
-WallPart part_around(const SoftBodyModel& model, std::span<const Index> touched) {
-    std::vector<std::uint8_t> group(model.group_count(), 0), particle(model.size(), 0);
-    for (const Index i : touched)
-        for (Index m = model.cluster_start[at(i)]; m < model.cluster_start[at(i) + 1]; ++m)
-            group[at(model.cluster[at(m)]) / kernel::lanes] = 1;
-    const Clusters clusters(model);
-    WallPart part;
-    for (std::size_t g = 0; g < group.size(); ++g) {
-        if (!group[g]) continue;
-        part.groups.push_back(static_cast<Index>(g));
-        for (const std::int32_t i : clusters.members(g)) particle[at(i)] = 1;
-    }
-    for (std::size_t i = 0; i < particle.size(); ++i) {
-        if (!particle[i]) continue;
-        const auto k = static_cast<Index>(i);
-        if (!part.runs.empty() && k - part.runs.back().second <= run_gap)
-            part.runs.back().second = k + 1;
+namespace {
+
+/// Where `marked` is not 0.
+std::vector<std::pair<Index, Index>> runs_of(const std::vector<std::uint8_t>& marked) {
+    std::vector<std::pair<Index, Index>> runs;
+    const auto end = marked.end();
+    for (auto i = marked.begin(); (i = std::find(i, end, 1)) != end;) {
+        const auto first = static_cast<Index>(i - marked.begin());
+        i = std::find(i, end, 0);
+        const auto last = static_cast<Index>(i - marked.begin());
+        if (!runs.empty() && first - runs.back().second < run_gap)
+            runs.back().second = last;
         else
-            part.runs.emplace_back(k, k + 1);
+            runs.emplace_back(first, last);
     }
+    return runs;
+}
+
+}  // namespace
+
+WallPart part_around(const SoftBodyModel& model, std::span<const Index> touched) {
+    std::vector<std::uint8_t> lane(model.group_count() * kernel::lanes, 0), particle(model.size(), 0);
+    for (const Index i : touched) particle[at(i)] = 1;
+    WallPart part;
+    part.touched = runs_of(particle);
+    for (const auto& [first, last] : part.touched)
+        for (Index i = first; i < last; ++i) {
+            if (!particle[at(i)]) continue;
+            for (Index m = model.cluster_start[at(i)]; m < model.cluster_start[at(i) + 1]; ++m)
+                lane[at(model.cluster[at(m)])] = 1;
+        }
+    const Clusters clusters(model);
+    for (std::size_t g = 0; g < model.group_count(); ++g) {
+        const std::uint8_t* const mine = lane.data() + g * kernel::lanes;
+        if (std::all_of(mine, mine + kernel::lanes, [](std::uint8_t m) { return m == 0; })) continue;
+        part.groups.push_back(static_cast<Index>(g));
+        const std::span<const std::int32_t> members = clusters.members(g);
+        for (std::size_t l = 0; l < kernel::lanes; ++l) {
+            if (!mine[l]) continue;
+            for (std::size_t k = l; k < members.size(); k += kernel::lanes) particle[at(members[k])] = 1;
+        }
+    }
+    part.runs = runs_of(particle);
     return part;
 }
 
@@ -299,6 +322,13 @@ void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& sc
     workers.for_ranges(part.runs.size(), run_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) set.apply(walked, at(part.runs[k].first), at(part.runs[k].second));
     });
+}
+
+void apply_touched(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+                   const WallPart& part) {
+    const kernel::Set& set = kernel::best();
+    const kernel::Particles walked = particles(model, state, scratch, h);
+    for (const auto& [first, last] : part.touched) set.apply(walked, at(first), at(last));
 }
 
 void finish(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,

@@ -73,12 +73,13 @@ void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& sc
 void solve_and_apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
                      const Workers& workers);
 
-/// A part of the wall: the groups of clusters that hold any of some particles, and all particles of those groups, as
-/// runs [first, second) that may take in a few neighbours.  Passes after the first need only look here: where nothing
-/// touched the wall, it has nothing new to say.
+/// A part of the wall: the clusters that hold any of some particles, and all particles of those clusters.  Passes after
+/// the first need only look here: where nothing touched the wall, it has nothing new to say.  Runs [first, second) are
+/// of particles, ascending and apart; they may take in a few neighbours.
 struct WallPart {
-    std::vector<Index> groups;                  ///< ascending
-    std::vector<std::pair<Index, Index>> runs;  ///< of particles, ascending, apart
+    std::vector<Index> groups;                     ///< of clusters, ascending
+    std::vector<std::pair<Index, Index>> runs;     ///< all particles of the clusters
+    std::vector<std::pair<Index, Index>> touched;  ///< the particles given: where forces may change
 };
 /// touched: particles, in any order, repeats allowed.
 WallPart part_around(const SoftBodyModel& model, std::span<const Index> touched);
@@ -89,6 +90,9 @@ void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScrat
                  const Workers& workers);
 void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h, const WallPart& part,
            const Workers& workers);
+/// The same where only forces changed since the last apply.
+void apply_touched(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+                   const WallPart& part);
 
 /// Brings particles that others have moved back to within what max_speed_mm_s lets them go.  Repeats are possible.
 void limit_speed(const SoftBodyModel& model, SoftBodyState& state, const SoftBodyScratch& scratch, double h,

@@ -216,7 +216,7 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
             touched = part_around(wall, particles);
         }
         extra.gather(p);
-        apply(wall, state, scratch, h, touched, workers);
+        apply_touched(wall, state, scratch, h, touched);
 
         // Where wall and device slid past each other, the rows speak of another place: look again, and once more.
         p.stage("contact");
