@@ -107,7 +107,7 @@ void bench(const BenchOptions& options, const AppContext& context) {
         film = std::make_unique<Film>(scene,
                                       FilmOptions{"", scene.video.width, scene.video.height, scene.video.fps,
                                                   [&](std::string_view part) { parts.begin(part); }},
-                                      false);
+                                      0);
     Progress progress("benchmark");
     const Input base = session.base_input();
     const auto steps = std::max<std::int64_t>(1, std::llround(options.seconds / session.dt()));

@@ -25,7 +25,7 @@ void describe_solids(const AnatomyModel& anatomy, FrameDescription& frame) {
     }
 }
 
-void describe_contrast(const World& world, const AnatomyModel& anatomy, FrameLumen& lumen) {
+void describe_contrast(const World& world, const AnatomyModel& anatomy, FrameMemory& memory, FrameLumen& lumen) {
     const auto* contrast = world.first<ContrastState>();
     if (contrast == nullptr) return;
     const auto& concentration = contrast->concentration;
@@ -33,15 +33,20 @@ void describe_contrast(const World& world, const AnatomyModel& anatomy, FrameLum
         lumen.contrast_mg_ml.clear();
         return;
     }
-    lumen.contrast_mg_ml.resize(anatomy.lumen.vertices.size());
-    world.workers().for_ranges(anatomy.lumen.vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            lumen.contrast_mg_ml[i] =
-                concentration[static_cast<std::size_t>(anatomy.centreline.nearest(anatomy.lumen.vertices[i]))];
-    });
+    const std::vector<Vec3>& vertices = anatomy.lumen.vertices;
+    std::vector<Index>& node = memory.node_of_vertex;
+    if (node.size() != vertices.size()) {
+        node.resize(vertices.size());
+        world.workers().for_ranges(node.size(), 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) node[i] = anatomy.centreline.nearest(vertices[i]);
+        });
+    }
+    lumen.contrast_mg_ml.resize(node.size());
+    for (std::size_t i = 0; i < node.size(); ++i)
+        lumen.contrast_mg_ml[i] = concentration[static_cast<std::size_t>(node[i])];
 }
 
-void describe_lumen(const Parts& parts, FrameLumen& lumen) {
+void describe_lumen(const Parts& parts, FrameMemory& memory, FrameLumen& lumen) {
     lumen.vertices = parts.surface_state->vertices;
     if (lumen.topology_revision == 0) {
         lumen.topology_revision = 1;
@@ -60,7 +65,7 @@ void describe_lumen(const Parts& parts, FrameLumen& lumen) {
         const double newtons = std::sqrt(force_mn[t].squaredNorm()) / units::newton;
         for (const Index corner : lumen.triangles[t]) lumen.wall_force_n[static_cast<std::size_t>(corner)] += newtons;
     }
-    describe_contrast(*parts.world, *parts.anatomy, lumen);
+    describe_contrast(*parts.world, *parts.anatomy, memory, lumen);
 }
 
 std::uint8_t material_index(FrameDevice& device, const std::string& name) {
@@ -148,10 +153,11 @@ void describe_beam(const World& world, const SceneSpec& scene, const Channels& c
 
 }  // namespace
 
-void describe_frame(World& world, const SceneSpec& scene, const Channels& channels, FrameDescription& frame) {
+void describe_frame(World& world, const SceneSpec& scene, const Channels& channels, FrameMemory& memory,
+                    FrameDescription& frame) {
     const Parts parts = find_parts(world);
     describe_solids(*parts.anatomy, frame);
-    describe_lumen(parts, frame.lumen);
+    describe_lumen(parts, memory, frame.lumen);
     frame.devices.clear();
     if (parts.catheter) frame.devices.push_back(describe_catheter(*parts.catheter, parts.catheter_route->shape));
     if (parts.wire) frame.devices.push_back(describe_wire(*parts.wire));

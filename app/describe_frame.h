@@ -1,6 +1,8 @@
 // A world as it stands -> what the renderer draws.  The one place that knows both sides.
 #pragma once
 
+#include <vector>
+
 #include "core/channels.h"
 #include "render/frame_description.h"
 #include "scene/scene_spec.h"
@@ -8,8 +10,14 @@
 
 namespace cathlab {
 
-/// Fills everything but size, seed, frame_index and overlay.  Give the same object for every frame of a run: meshes are
-/// copied once and the camera turns with the device's tip from where it looked last.
-void describe_frame(World& world, const SceneSpec& scene, const Channels& channels, FrameDescription& frame);
+/// What is the same in all frames of a run and takes a while to find.
+struct FrameMemory {
+    std::vector<Index> node_of_vertex;  ///< the centre-line node nearest to each vertex of the lumen at rest
+};
+
+/// Fills everything but size, seed, frame_index and overlay.  Give the same objects for every frame of a run: meshes
+/// are copied once and the camera turns with the device's tip from where it looked last.
+void describe_frame(World& world, const SceneSpec& scene, const Channels& channels, FrameMemory& memory,
+                    FrameDescription& frame);
 
 }  // namespace cathlab

@@ -20,16 +20,17 @@ constexpr std::size_t queue_slots = 4;  // pictures that a slow moment of the fi
 }  // namespace
 
 ThreadShares share_threads(int threads, bool with_film) {
-    if (!with_film || threads < 2) return {threads, false};
-    return {threads - 1, true};
+    if (!with_film || threads < 2) return {threads, 0};
+    const int film = threads < 4 ? 1 : 2;
+    return {threads - film, film};
 }
 
 struct Film::Impl {
-    Impl(const SceneSpec& the_scene, const FilmOptions& the_options, bool apart)
+    Impl(const SceneSpec& the_scene, const FilmOptions& the_options, int threads)
         : scene(the_scene),
           options(the_options),
           hud(std::clamp(static_cast<float>(the_options.height) / 512.0F, 0.5F, 4.0F)),
-          queue(the_options, apart, queue_slots) {}
+          queue(the_options, threads, queue_slots) {}
 
     void lay_out(FrameDescription& frame, const Channels& channels) {
         fill_hud(scene, channels, panels);
@@ -49,13 +50,14 @@ struct Film::Impl {
     Hud hud;  // on the caller's thread: ImGui has one current context in a process
     FilmQueue queue;
     std::optional<FrameCamera> camera;  // of the picture before
+    FrameMemory memory;
     HudData panels;
     std::deque<Event> messages;
     std::size_t count = 0;
 };
 
-Film::Film(const SceneSpec& scene, const FilmOptions& options, bool apart)
-    : impl_(std::make_unique<Impl>(scene, options, apart)) {}
+Film::Film(const SceneSpec& scene, const FilmOptions& options, int threads)
+    : impl_(std::make_unique<Impl>(scene, options, threads)) {}
 
 Film::~Film() = default;
 
@@ -72,7 +74,7 @@ void Film::add(World& world, const Channels& channels) {
     frame.seed = m.scene.seed;
     frame.frame_index = m.count;
     frame.inner_camera = m.camera;
-    describe_frame(world, m.scene, channels, frame);
+    describe_frame(world, m.scene, channels, m.memory, frame);
     m.camera = frame.inner_camera;
     if (m.options.probe) m.options.probe("panels");
     m.lay_out(frame, channels);

@@ -15,21 +15,21 @@ namespace cathlab {
 /// How the threads of a command are shared out between the step and the film.
 struct ThreadShares {
     int step = 1;
-    bool film_apart = false;  ///< the film has a thread of its own; else each picture is drawn before the next step
+    int film = 0;  ///< 0: each picture is drawn before the next step; 1: beside it; 2: drawn and encoded beside it
 };
 
-/// threads >= 1 in all.  With a film and more than one thread, one of them is the film's: a picture costs less than the
-/// time until the next is due, so it never needs more.
+/// threads >= 1 in all.  With a film and more than one thread, one of them draws and encodes; of four or more, one
+/// draws and another encodes: the step gains less from a third thread than the film from a second.
 ThreadShares share_threads(int threads, bool with_film);
 
 /// Pictures are described by the caller's thread (a snapshot of what the renderer needs) and drawn and encoded either
-/// there or on a thread of their own, behind a short queue.  No picture is ever dropped: where the queue is full, add()
+/// there or on threads of their own, behind a short queue.  No picture is ever dropped: where the queue is full, add()
 /// waits.  The pictures are the same either way, whatever the threads' timing.
 class Film {
 public:
-    /// apart: on a thread of its own.  Throws UserError: no off-screen GL, no encoder, an unwritable folder, an odd
-    /// size.
-    Film(const SceneSpec& scene, const FilmOptions& options, bool apart);
+    /// threads: 0 to 2 of its own (ThreadShares).  Throws UserError: no off-screen GL, no encoder, an unwritable
+    /// folder, an odd size.
+    Film(const SceneSpec& scene, const FilmOptions& options, int threads);
     /// Without close() before it: the film is given up.
     ~Film();
     Film(const Film&) = delete;

@@ -2,12 +2,12 @@
 
 namespace cathlab {
 
-FilmQueue::FilmQueue(const FilmOptions& options, bool apart, std::size_t slots) : slots_(apart ? slots : 1) {
-    if (!apart) {
-        studio_ = std::make_unique<Studio>(options, Workers());
+FilmQueue::FilmQueue(const FilmOptions& options, int threads, std::size_t slots) : slots_(threads > 0 ? slots : 1) {
+    if (threads == 0) {
+        studio_ = std::make_unique<Studio>(options, false);
         return;
     }
-    thread_ = std::thread([this, options] { work(options); });
+    thread_ = std::thread([this, options, threads] { work(options, threads > 1); });
     try {
         std::unique_lock lock(mutex_);
         wait(lock, [&] { return opened_; });
@@ -106,9 +106,9 @@ void FilmQueue::close() {
     if (failure_) std::rethrow_exception(failure_);
 }
 
-void FilmQueue::work(const FilmOptions& options) {
+void FilmQueue::work(const FilmOptions& options, bool encode_apart) {
     guarded([&] {
-        auto studio = std::make_unique<Studio>(options, Workers());
+        auto studio = std::make_unique<Studio>(options, encode_apart);
         std::unique_lock lock(mutex_);
         studio_ = std::move(studio);
         opened_ = true;

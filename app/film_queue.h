@@ -20,9 +20,9 @@ namespace cathlab {
 /// One thread calls; what stops the studio is thrown by every later call.
 class FilmQueue {
 public:
-    /// apart: the studio is made, used and let go on a thread of its own, up to `slots` pictures behind.
-    /// Throws what Studio's constructor throws.
-    FilmQueue(const FilmOptions& options, bool apart, std::size_t slots);
+    /// threads > 0: the studio is made, used and let go on a thread of its own, up to `slots` pictures behind; of two,
+    /// it has the second for its encoder.  Throws what Studio's constructor throws.
+    FilmQueue(const FilmOptions& options, int threads, std::size_t slots);
     ~FilmQueue();
     FilmQueue(const FilmQueue&) = delete;
     FilmQueue& operator=(const FilmQueue&) = delete;
@@ -40,7 +40,7 @@ public:
     void close();
 
 private:
-    void work(const FilmOptions& options);
+    void work(const FilmOptions& options, bool encode_apart);
     void draw(std::size_t slot);
     void guarded(const std::function<void()>& job);
     void wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& ready);

@@ -91,7 +91,7 @@ void replay(const ReplayOptions& options, AppContext& context) {
         throw UserError(options.folder + ": the anatomy is built otherwise than when this run was recorded");
     std::unique_ptr<Film> film;
     if (filmed)
-        film = std::make_unique<Film>(scene, film_options(options.film, scene, options.film.video), threads.film_apart);
+        film = std::make_unique<Film>(scene, film_options(options.film, scene, options.film.video), threads.film);
     Progress progress("replaying");
     std::int64_t k = 0;
     bool agrees = true;

@@ -105,7 +105,7 @@ private:
         video_ = options.film.video.empty() ? folder_ + "/fluoro.mp4" : options.film.video;
         try {
             return std::make_unique<Film>(session.scene(), film_options(options.film, session.scene(), video_),
-                                          share_threads(options.threads, true).film_apart);
+                                          share_threads(options.threads, true).film);
         } catch (...) {
             std::error_code not_empty;
             std::filesystem::remove(folder_, not_empty);

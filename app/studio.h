@@ -7,7 +7,6 @@
 #include <string>
 #include <string_view>
 
-#include "core/parallel.h"
 #include "imaging/image.h"
 #include "render/frame_description.h"
 
@@ -22,16 +21,16 @@ struct FilmOptions {
 };
 
 /// One description after another -> pictures -> the film.  Make it, use it and let it go on one thread: a GL context
-/// belongs to the thread where it is current.
+/// belongs to the thread where it is current.  The encoder may work beside it, a picture behind.
 class Studio {
 public:
     /// Throws UserError: no off-screen GL, no encoder, an unwritable folder, an odd size.
-    Studio(const FilmOptions& options, const Workers& workers);
+    Studio(const FilmOptions& options, bool encode_apart);
     ~Studio();
     Studio(const Studio&) = delete;
     Studio& operator=(const Studio&) = delete;
 
-    /// Draws and appends a picture.  Throws UserError where the encoder stopped.
+    /// Draws and appends a picture.  Throws UserError where the encoder stopped, at this picture or the one before.
     void add(const FrameDescription& frame);
     /// The last picture; empty before the first.
     const Image8& last() const;
