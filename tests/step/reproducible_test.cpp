@@ -17,9 +17,9 @@ struct ExpectedHash {
     std::uint64_t hash;
 };
 constexpr std::array<ExpectedHash, 3> expected_hashes{{
-    {"tube_wire", 0x5cd82db68d51a059},
-    {"tube_catheter", 0xb9868c8dfa97f634},
-    {"fork", 0xeae8110821ec0269},
+    {"tube_wire", 0x9c0f4d3d579377fc},
+    {"tube_catheter", 0x8ffc57ab9d789af5},
+    {"fork", 0x4a0ea5ed412ac43b},
 }};
 
 constexpr int steps = 150;
