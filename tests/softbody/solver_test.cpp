@@ -255,6 +255,21 @@ TEST(Solver, APartOfTheWallIsSolvedAsTheWholeWouldBe) {
         }
 }
 
+TEST(Solver, WhereOnlyForcesChangedTheTouchedParticlesAloneAreApplied) {
+    Wall wall(rig::free_tube());
+    rig::shake(wall, 50.0);
+    const double h = 0.004;
+    predict(wall.model, wall.state, wall.scratch, h, {}, wall.workers);
+    solve_and_apply(wall.model, wall.state, wall.scratch, h, wall.workers);
+    const std::vector<Index> touched{40, 3, 3, 200};
+    const WallPart part = part_around(wall.model, touched);
+    for (const Index i : touched) wall.scratch.force[static_cast<std::size_t>(i)] = Vec3(0, 5, 0);
+    Wall whole = wall;
+    apply(whole.model, whole.state, whole.scratch, h, whole.workers);
+    apply_touched(wall.model, wall.state, wall.scratch, h, part);
+    EXPECT_EQ(state_hash(wall.state), state_hash(whole.state));
+}
+
 TEST(Solver, APartAroundNothingIsEmpty) {
     const Wall wall(rig::free_tube());
     const WallPart part = part_around(wall.model, {});
