@@ -39,17 +39,6 @@ void check_free(const std::vector<Bound>& free) {
 
 }  // namespace
 
-WallParameters wall_parameters(const SceneWall& wall) {
-    constexpr double per_m3 = 1e-9;  // kg/m3 -> kg/mm3
-    WallParameters out;
-    out.density_kg_mm3 = wall.density_kg_m3 * per_m3;
-    out.cluster_spacing_mm = wall.cluster_spacing_mm;
-    out.cluster_radius_mm = wall.cluster_radius_mm;
-    out.cluster_stiffness = wall.cluster_stiffness;
-    out.damping_per_s = wall.damping_per_s;
-    return out;
-}
-
 double strain_error(const StressStrain& reference, const PressureRig& rig, const WallParameters& wall) {
     double sum = 0.0;
     try {

@@ -8,6 +8,7 @@
 #include "calibrate/named_parameters.h"
 #include "calibrate/pressure_rig.h"
 #include "optimise/swarm.h"
+#include "scene/wall_parameters.h"
 
 namespace cathlab {
 
@@ -35,9 +36,6 @@ struct WallCalibration {
     bool stopped = false;
     std::string overlay;  ///< TOML to lay over a scene
 };
-
-/// The particles' wall parameters that a scene's [wall] stands for (the regions' own left aside).
-WallParameters wall_parameters(const SceneWall& wall);
 
 /// Root mean square of the difference of strains; infinity where the rig does not come to rest or cannot be built.
 double strain_error(const StressStrain& reference, const PressureRig& rig, const WallParameters& wall);

@@ -16,6 +16,7 @@
 #include "scene/anatomy_file.h"
 #include "scene/device_file.h"
 #include "scene/flow_root.h"
+#include "scene/wall_parameters.h"
 #include "softbody/binding.h"
 #include "softbody/solver.h"
 #include "softbody/wall_sample.h"
@@ -77,17 +78,7 @@ void override_regions(const SceneSpec& spec, AnatomyModel& anatomy, WallParamete
 }
 
 Shared<SoftBodyModel> build_wall(const SceneSpec& spec, AnatomyModel& anatomy) {
-    WallParameters parameters;
-    parameters.density_kg_mm3 = spec.wall.density_kg_m3 * 1e-9;
-    parameters.cluster_spacing_mm = spec.wall.cluster_spacing_mm;
-    parameters.cluster_radius_mm = spec.wall.cluster_radius_mm;
-    parameters.cluster_stiffness = spec.wall.cluster_stiffness;
-    parameters.damping_per_s = spec.wall.damping_per_s;
-    parameters.surrounding_kpa_per_mm = spec.wall.surrounding_kpa_per_mm;
-    parameters.surrounding_kpa_s_per_mm = spec.wall.surrounding_kpa_s_per_mm;
-    parameters.max_speed_mm_s = spec.wall.max_speed_mm_s;
-    parameters.precision = spec.wall.precision == "double" ? Precision::double_ : Precision::float_;
-    parameters.reference_spacing_mm = spec.wall.particle_spacing_mm;
+    WallParameters parameters = wall_parameters(spec.wall);
     override_regions(spec, anatomy, parameters);
 
     std::vector<double> wanted;
