@@ -85,7 +85,7 @@ void expect_sources(const ReferenceTable& table, std::size_t at_least) {
     std::ifstream file(std::string(CATHLAB_SOURCE_DIR) + "/docs/references.md");
     std::stringstream references;
     references << file.rdbuf();
-    const std::regex key(R"(\[([a-z]+\d{4}[a-z]*)\])");
+    const std::regex key(R"(\[([a-z]+\d{4}[a-z]?)\])");
     std::map<std::string, int> keys;
     for (std::sregex_iterator it(table.header.begin(), table.header.end(), key), end; it != end; ++it) ++keys[(*it)[1]];
     EXPECT_GE(keys.size(), at_least);
