@@ -140,7 +140,7 @@ void bench(const BenchOptions& options, const AppContext& context) {
 
 void add_bench_command(CLI::App& app, AppContext& context) {
     const auto options = std::make_shared<BenchOptions>();
-    CLI::App* command = app.add_subcommand("bench", "Measure milliseconds a step by room");
+    CLI::App* command = app.add_subcommand("bench", "Measure milliseconds a step by room, or one room beside a peer");
     command->add_option("SCENE", options->scene, "a scene file, or the name of one in scenes/")->capture_default_str();
     command->add_option("--seconds", options->seconds, "simulated time")
         ->check(CLI::Range(0.02, 3600.0))
@@ -150,7 +150,10 @@ void add_bench_command(CLI::App& app, AppContext& context) {
         ->capture_default_str();
     command->add_flag("--json", options->json, "As JSON");
     command->add_flag("!--no-pictures", options->pictures, "leave the pictures out");
-    command->callback([options, &context] { bench(*options, context); });
+    add_bench_wall_command(*command);
+    command->callback([options, command, &context] {
+        if (command->get_subcommands().empty()) bench(*options, context);
+    });
 }
 
 }  // namespace cathlab

@@ -77,6 +77,17 @@ TriMesh tube_mesh(const TubeShape& shape) {
     return mesh;
 }
 
+TubeShape tube_for(std::size_t particles, double spacing_mm) {
+    constexpr double radii_long = 500.0 / 12.0;
+    constexpr double packing = 1.07;  // particles on spacing^2 of a mesh whose edges are half the spacing, measured
+    TubeShape shape;
+    shape.radius_mm = spacing_mm * std::sqrt(static_cast<double>(particles) / (packing * 2.0 * units::pi * radii_long));
+    shape.length_mm = radii_long * shape.radius_mm;
+    shape.edge_mm = 0.5 * spacing_mm;
+    shape.closed = false;
+    return shape;
+}
+
 WallSample tube_sample(const TubeShape& shape, double spacing_mm, double thickness_mm, std::uint64_t seed) {
     const TriMesh mesh = tube_mesh(shape);
     const std::vector<double> spacing(mesh.vertices.size(), spacing_mm);

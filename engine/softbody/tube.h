@@ -18,6 +18,10 @@ struct TubeShape {
 /// The tube's surface, triangles outward.
 TriMesh tube_mesh(const TubeShape& shape);
 
+/// An open tube, 42 radii long (an aorta's 12 mm by 500), on whose wall about `particles` of this spacing find room.
+/// particles > 0; spacing_mm > 0.  Its edges are half the spacing.
+TubeShape tube_for(std::size_t particles, double spacing_mm);
+
 /// The tube sampled with one region of the given spacing and thickness.
 WallSample tube_sample(const TubeShape& shape, double spacing_mm, double thickness_mm, std::uint64_t seed);
 

@@ -1,31 +1,14 @@
 // The program as a user meets it: command lines, exit codes, one sentence for each fault, nothing half written.
+#include "app/program.h"
+
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 #include "scene/temporary_folder.h"
 
 namespace cathlab {
 namespace {
-
-struct Outcome {
-    int code = -1;
-    std::string text;  // stdout and stderr
-};
-
-Outcome call(const std::string& arguments, const std::string& environment = "") {
-    Outcome out;
-    const std::string command = environment + " " + CATHLAB_PROGRAM + " " + arguments + " 2>&1";
-    FILE* pipe = ::popen(command.c_str(), "r");
-    std::array<char, 4096> buffer{};
-    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) out.text.append(buffer.data(), n);
-    const int status = ::pclose(pipe);
-    out.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    return out;
-}
 
 /// One line, ended, that begins with the program's name.
 testing::AssertionResult one_sentence(const Outcome& outcome) {
