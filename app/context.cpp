@@ -1,8 +1,10 @@
 #include "context.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "core/errors.h"
@@ -61,6 +63,27 @@ std::string path_for_manifest(const std::string& path, const std::string& data_r
     const fs::path inside = full.lexically_relative(fs::weakly_canonical(data_root, error));
     if (error || inside.empty() || *inside.begin() == "..") return full.string();
     return inside.string();
+}
+
+std::string shell_command(int argc, const char* const* argv) {
+    constexpr std::string_view plain_marks = "_-+=:,./@%";
+    const auto plain = [&](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               plain_marks.find(c) != std::string_view::npos;
+    };
+    std::string out;
+    for (int i = 0; i < argc; ++i) {
+        const std::string word = i == 0 ? fs::path(argv[0]).filename().string() : argv[i];
+        if (i > 0) out += ' ';
+        if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) {
+            out += word;
+            continue;
+        }
+        out += '\'';
+        for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        out += '\'';
+    }
+    return out;
 }
 
 void catch_stop_signals() {

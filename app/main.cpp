@@ -21,6 +21,7 @@ void draw_on_one_thread() {
 int run_program(int argc, char** argv) {
     using namespace cathlab;
     AppContext context;
+    context.command_line = shell_command(argc, argv);
     CLI::App app("cathlab: an endovascular trainer and its headless simulator", "cathlab");
     app.set_version_flag("--version", std::string("cathlab ") + CATHLAB_VERSION);
     app.set_help_flag("-h,--help", "This text");
@@ -40,6 +41,7 @@ int run_program(int argc, char** argv) {
     add_replay_command(app, context);
     add_list_command(app, context);
     add_check_command(app, context);
+    add_calibrate_command(app, context);
     add_bench_command(app, context);
     try {
         app.parse(argc, argv);

@@ -5,27 +5,35 @@
 
 #include "core/errors.h"
 #include "progress.h"
-#include "scene/build_world.h"
 #include "step/step.h"
 #include "world/step_settings.h"
 
 namespace cathlab {
+namespace {
 
-Session::Session(const SceneSpec& scene, std::uint64_t seed, int threads, const AppContext& context) : scene_(scene) {
+void end_if_wanted() {
+    if (stop_wanted()) throw UserError("stopped while the scene was being built; nothing was written");
+}
+
+}  // namespace
+
+std::shared_ptr<const SceneModels> session_models(const SceneSpec& scene, int threads, const AppContext& context) {
     catch_stop_signals();  // here begins what takes long
     Progress progress("building");
     BuildOptions options;
     options.threads = threads;
     options.cache_folder = context.cache_folder;
-    const auto end_if_wanted = [] {
-        if (stop_wanted()) throw UserError("stopped while the scene was being built; nothing was written");
-    };
     options.progress = [&](double fraction, std::string_view what) {
         end_if_wanted();
         progress.update(fraction, what);
     };
-    const auto models = build_models(scene_, options);
+    auto models = build_models(scene, options);
     end_if_wanted();
+    return models;
+}
+
+Session::Session(const SceneSpec& scene, std::uint64_t seed, int threads, const AppContext& context) : scene_(scene) {
+    const auto models = session_models(scene_, threads, context);
     world_ = build_world(scene_, *models, seed, threads);
     anatomy_hash_ = cathlab::anatomy_hash(*models);
     prepare(*world_);

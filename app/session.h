@@ -10,10 +10,15 @@
 #include "core/channels.h"
 #include "core/event.h"
 #include "core/input.h"
+#include "scene/build_world.h"
 #include "scene/scene_spec.h"
 #include "world/world.h"
 
 namespace cathlab {
+
+/// What worlds of a scene share, with progress on stderr.  From here on Ctrl-C sets a flag (context.h); where it comes
+/// while the models are built, throws UserError, as for whatever the scene's files get wrong.
+std::shared_ptr<const SceneModels> session_models(const SceneSpec& scene, int threads, const AppContext& context);
 
 class Session {
 public:

@@ -1,48 +1,55 @@
 // The wall's parameters from a curve of stress and strain: a swarm, then a local search, over named numbers of a scene.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "calibrate/figures.h"
 #include "calibrate/named_parameters.h"
 #include "calibrate/pressure_rig.h"
+#include "calibrate/reference.h"
 #include "optimise/swarm.h"
-#include "scene/wall_parameters.h"
 
 namespace cathlab {
 
-struct StressStrain {
-    std::vector<double> stress_kpa;  ///< hoop stress, >= 0, rising
-    std::vector<double> strain;      ///< (r - r0) / r0
-};
-
+/// Everything that a search is asked; the defaults are those of `cathlab calibrate wall`.
 struct WallSearch {
-    /// Which numbers are free, within [wall]: wall.cluster_stiffness, wall.cluster_spacing_mm, wall.cluster_radius_mm,
-    /// wall.density_kg_m3.  Bounds by named_bound().
+    /// Which numbers are free, with bounds by named_bound(); empty = default_wall_bounds().
     std::vector<Bound> free;
-    SceneSpec scene;  ///< the other numbers of [wall]
+    SceneSpec scene;  ///< the other numbers of [wall] and the effects
     PressureRig rig;
     SwarmOptions swarm;
-    int polish_evaluations = 40;  ///< of the local search after the swarm; 0 = none
+    int polish_evaluations = 40;           ///< of the local search after the swarm; 0 = none
+    std::function<bool()> stop;            ///< asked while the rig runs; true = end soon with the best so far
+    std::function<void(int done)> polish;  ///< told after each evaluation of the local search
 };
 
 struct WallCalibration {
-    std::vector<std::pair<std::string, double>> values;
-    double rmse_first = 0.0;           ///< of strain, with the scene's own numbers
-    double rmse = 0.0;                 ///< of strain, with the best
-    std::vector<double> strain;        ///< of the rig with the best, one a row of the reference
-    std::vector<double> best_history;  ///< of the swarm
+    std::vector<Bound> free;
+    std::vector<std::pair<std::string, double>> first, values;  ///< of the scene, and the best
+    std::vector<double> strain_first, strain;                   ///< of the rig, one a row of the reference
+    Figures figures_first, figures;                             ///< of strain; NaN where the rig does not come to rest
+    std::vector<double> best_history;                           ///< RMSE after each generation of the swarm
+    int evaluations = 0;
     bool stopped = false;
     std::string overlay;  ///< TOML to lay over a scene
 };
 
-/// Root mean square of the difference of strains; infinity where the rig does not come to rest or cannot be built.
-double strain_error(const StressStrain& reference, const PressureRig& rig, const WallParameters& wall);
+/// s_c 4 to 14 mm, r_c 6 to 24 mm, t_c 0.3 to 0.97: round the best values of [li2025] (8 mm, 12 mm, 0.8).
+std::vector<Bound> default_wall_bounds();
 
-/// Throws UserError for a reference of fewer than two rows, columns of unequal length, stress that does not rise,
-/// numbers that are not finite, and for free numbers that do not change this rig.  Same result on any number of
-/// threads.
+/// Paths that change a tube under load: numbers of [wall] and of the effects that act on a wall by itself.
+std::vector<std::string> wall_paths();
+
+/// Root mean square of the difference of strains; infinity where the rig does not come to rest or cannot be built.
+double strain_error(const StressStrain& reference, const PressureRig& rig, const SceneSpec& scene,
+                    const std::function<bool()>& stop = {});
+
+/// Throws UserError for a bad reference (check(), reference.h), for free numbers that do not change this rig, and where
+/// nothing within the bounds can be built or comes to rest (with what was said of the first place tried).  Same result
+/// on any number of threads.
 WallCalibration calibrate_wall(const StressStrain& reference, const WallSearch& search);
 
 }  // namespace cathlab

@@ -18,7 +18,7 @@ struct LocalOptions {
     double x_tolerance = 1e-8;     ///< stop when a step is smaller
     double value_tolerance = 0.0;  ///< stop when the value changes by less than this part of itself; 0 = never
     /// Called after each evaluation; false = stop and keep the best so far.
-    std::function<bool(const Progress&)> on_evaluation;
+    std::function<bool(const SearchProgress&)> on_evaluation;
 };
 
 /// Throws UserError for a bad problem or options out of range.  What the objective throws passes through.

@@ -50,7 +50,7 @@ public:
     /// After the generations' values are known: tells the caller, who may stop.
     void report() {
         if (!options_.on_generation) return;
-        const Progress progress{result_.generations, options_.generations, result_.evaluations, result_.value,
+        const SearchProgress progress{result_.generations, options_.generations, result_.evaluations, result_.value,
                                 result_.best};
         if (!options_.on_generation(progress)) {
             result_.stopped = true;

@@ -26,7 +26,7 @@ struct Problem {
     std::vector<double> start;
 };
 
-struct Progress {
+struct SearchProgress {
     int generation = 0;  ///< done so far (swarm); 0 for a local search
     int generations = 0;
     int evaluations = 0;

@@ -19,7 +19,7 @@ struct SwarmOptions {
     std::uint64_t seed = 1;
     int threads = 1;  ///< evaluations at the same time; does not change the result by a bit
     /// Called after each generation; false = stop and keep the best so far.
-    std::function<bool(const Progress&)> on_generation;
+    std::function<bool(const SearchProgress&)> on_generation;
 };
 
 /// Throws UserError for a bad problem or options out of range.  What the objective throws passes through.

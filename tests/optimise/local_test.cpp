@@ -51,7 +51,7 @@ TEST(LocalSearch, EndsOnTheBoundWhereTheMinimumIsOutside) {
 
 TEST(LocalSearch, StopsWhenToldAndLetsErrorsThrough) {
     LocalOptions options;
-    options.on_evaluation = [](const Progress& p) { return p.evaluations < 5; };
+    options.on_evaluation = [](const SearchProgress& p) { return p.evaluations < 5; };
     const Result result = minimise_local({square, rosenbrock, {}}, options);
     EXPECT_TRUE(result.stopped);
     EXPECT_EQ(result.evaluations, 5);

@@ -90,7 +90,7 @@ TEST(Swarm, StopsWhenToldAndKeepsTheBest) {
     SwarmOptions options;
     options.particles = 10;
     int calls = 0;
-    options.on_generation = [&](const Progress& p) {
+    options.on_generation = [&](const SearchProgress& p) {
         ++calls;
         EXPECT_EQ(p.evaluations, 10 * calls);
         EXPECT_EQ(p.generation, calls - 1);

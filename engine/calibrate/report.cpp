@@ -1,0 +1,182 @@
+#include "calibrate/report.h"
+
+#include <numeric>
+
+namespace cathlab {
+namespace {
+
+constexpr double percent = 100.0;
+
+std::string plus_minus(double mean, double sd, double factor) {
+    return plain_number(factor * mean, 3) + " \xC2\xB1 " + plain_number(factor * sd, 3);
+}
+
+std::vector<double> scaled(std::span<const double> values, double factor) {
+    std::vector<double> out;
+    for (const double v : values) out.push_back(factor * v);
+    return out;
+}
+
+std::vector<double> differences(std::span<const double> simulated, std::span<const double> reference, double factor) {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < simulated.size(); ++i) out.push_back(factor * (simulated[i] - reference[i]));
+    return out;
+}
+
+Plot swarm_plot(const std::vector<double>& history, const std::string& label, double factor) {
+    std::vector<double> generation(history.size());
+    std::iota(generation.begin(), generation.end(), 0.0);
+    Plot plot{.title = "The swarm's path", .x_label = "generation", .y_label = label, .curves = {}, .log_y = true};
+    plot.curves.push_back({.label = "best so far",
+                           .x = std::move(generation),
+                           .y = scaled(history, factor),
+                           .style = CurveStyle::best,
+                           .marks = true});
+    plot.height = 260;
+    return plot;
+}
+
+PageTable swarm_table(const SwarmOptions& swarm, int runs, bool stopped) {
+    return {"The swarm",
+            {"", ""},
+            {{"particles", std::to_string(swarm.particles)},
+             {"generations", std::to_string(swarm.generations) + (stopped ? ", stopped before the end" : "")},
+             {"inertia w", plain_number(swarm.omega)},
+             {"own best c1", plain_number(swarm.eta1)},
+             {"swarm's best c2", plain_number(swarm.eta2)},
+             {"largest step, part of a range", plain_number(swarm.max_speed)},
+             {"seed", std::to_string(swarm.seed)},
+             {"simulations in all", std::to_string(runs)}}};
+}
+
+std::string stress_text(RigStress stress) {
+    switch (stress) {
+        case RigStress::hoop:
+            return "The stress is the true one in the wall, on its section under load: a pressure p = sigma t / r "
+                   "pushes, "
+                   "with the radius and the thickness under load (thin wall of constant volume).";
+        case RigStress::nominal:
+            return "The stress is the force in the wall over its section at rest: F / A = sigma t0 / r0 pushes.";
+        case RigStress::paper: break;
+    }
+    return "The stress is a radial traction, sigma = F / A as it stands: the wall itself carries r0 / t0 times as "
+           "much.";
+}
+
+}  // namespace
+
+PageTable figure_table(const Figures& first, const Figures& best, const std::string& unit, double factor) {
+    const auto row = [&](const std::string& name, double a, double b) {
+        return std::vector<std::string>{name, plain_number(factor * a, 3), plain_number(factor * b, 3)};
+    };
+    PageTable out{"Error, " + unit, {"", "first guess", "best"}, {}};
+    out.rows.push_back(row("RMSE", first.rmse, best.rmse));
+    out.rows.push_back(
+        {"mean \xC2\xB1 SD", plus_minus(first.mean, first.sd, factor), plus_minus(best.mean, best.sd, factor)});
+    out.rows.push_back({"mean absolute \xC2\xB1 SD", plus_minus(first.mean_absolute, first.sd_absolute, factor),
+                        plus_minus(best.mean_absolute, best.sd_absolute, factor)});
+    out.rows.push_back(row("median absolute", first.median, best.median));
+    out.rows.push_back(row("90th percentile absolute", first.p90, best.p90));
+    out.rows.push_back(row("maximum absolute", first.maximum, best.maximum));
+    return out;
+}
+
+Page wall_page(const StressStrain& reference, const WallSearch& search, const WallCalibration& found,
+               const std::string& command) {
+    Page page;
+    page.title = "Calibration of the wall";
+    page.paragraphs.push_back(
+        "Reference: " + reference.file + ", " + std::to_string(reference.strain.size()) +
+        " rows. Rig: a tube of radius " + plain_number(search.rig.shape.radius_mm) + " mm, length " +
+        plain_number(search.rig.shape.length_mm) + " mm and thickness " + plain_number(search.rig.thickness_mm) +
+        " mm, held at both ends; strain (r - r0) / r0 of its middle third. " + stress_text(search.rig.stress));
+    if (found.stopped) page.paragraphs.emplace_back("The search was stopped; this is the best that it had found.");
+    page.tables.push_back(figure_table(found.figures_first, found.figures, "% strain", percent));
+    PageTable searched{"What was searched", {"", "from", "to", "first guess", "best"}, {}};
+    for (std::size_t k = 0; k < found.values.size(); ++k)
+        searched.rows.push_back({found.values[k].first, plain_number(found.free[k].lower),
+                                 plain_number(found.free[k].upper), plain_number(found.first[k].second),
+                                 plain_number(found.values[k].second, 5)});
+    page.tables.push_back(searched);
+
+    Plot curve{.title = "Strain over stress", .x_label = "stress, kPa", .y_label = "strain, %", .curves = {}};
+    const auto add = [&](Plot& plot, const char* label, std::vector<double> y, CurveStyle style, bool line) {
+        plot.curves.push_back({.label = label,
+                               .x = reference.stress_kpa,
+                               .y = std::move(y),
+                               .style = style,
+                               .marks = !line,
+                               .line = line});
+    };
+    add(curve, "reference", scaled(reference.strain, percent), CurveStyle::reference, false);
+    add(curve, "first guess", scaled(found.strain_first, percent), CurveStyle::first, true);
+    add(curve, "best", scaled(found.strain, percent), CurveStyle::best, true);
+    Plot error{.title = "Error over stress",
+               .x_label = "stress, kPa",
+               .y_label = "simulated - reference, % strain",
+               .curves = {},
+               .zero_line = true};
+    add(error, "first guess", differences(found.strain_first, reference.strain, percent), CurveStyle::first, true);
+    add(error, "best", differences(found.strain, reference.strain, percent), CurveStyle::best, true);
+    error.height = 300;
+    page.plots = {curve, error, swarm_plot(found.best_history, "RMSE, % strain", percent)};
+    page.tables.push_back(swarm_table(search.swarm, found.evaluations, found.stopped));
+    page.command = command;
+    return page;
+}
+
+Page heart_page(const HeartSearch& search, const HeartCalibration& found, const std::string& reference,
+                const std::string& command) {
+    constexpr double mm = 1.0;
+    Page page;
+    page.title = "Calibration of the heart";
+    page.paragraphs.push_back(
+        "Reference: " + reference + ". The annulus' mean displacement along its axis into the aorta, over " +
+        std::to_string(search.beats) + " beats at " + plain_number(search.scene.heart.rate_bpm) +
+        " a minute after one that does not count. The rest pose of the vessels is the moment at which the annulus "
+        "stands "
+        "nearest to the apex: phase " +
+        plain_number(search.target.rest_phase, 3) + " of the reference, where its displacement counts as 0.");
+    page.paragraphs.push_back(
+        std::string("Objective: ") +
+        (search.at_peaks ? "the error at the peaks of each beat, and a tenth of the RMSE." : "the RMSE.") +
+        " The search begins at the inverse (three or so runs, RMSE " + plain_number(found.figures_start.rmse, 3) +
+        " mm); from there the swarm looked " + plain_number(search.reach_mm) + " mm to either side of each knot.");
+    if (found.stopped) page.paragraphs.emplace_back("The search was stopped; this is the best that it had found.");
+    page.tables.push_back(figure_table(found.figures_first, found.figures, "mm", mm));
+
+    Plot curve{.title = "Annulus over the beats", .x_label = "beats", .y_label = "into the aorta, mm", .curves = {}};
+    curve.curves = {
+        {.label = "reference", .x = found.motion.beat, .y = found.reference, .style = CurveStyle::reference},
+        {.label = "first guess", .x = found.first.beat, .y = found.first.z_mm, .style = CurveStyle::first},
+        {.label = "best",
+         .x = found.motion.beat,
+         .y = found.motion.z_mm,
+         .style = CurveStyle::best,
+         .marks = true,
+         .line = false}};
+    Plot error{.title = "Error over the beats",
+               .x_label = "beats",
+               .y_label = "simulated - reference, mm",
+               .curves = {},
+               .zero_line = true};
+    error.curves = {{.label = "first guess",
+                     .x = found.first.beat,
+                     .y = differences(found.first.z_mm, found.reference_first, mm),
+                     .style = CurveStyle::first},
+                    {.label = "best",
+                     .x = found.motion.beat,
+                     .y = differences(found.motion.z_mm, found.reference, mm),
+                     .style = CurveStyle::best}};
+    error.height = 300;
+    page.plots = {curve, error, swarm_plot(found.best_history, search.at_peaks ? "objective, mm" : "RMSE, mm", mm)};
+    PageTable knots{"The cylinder's profile", {"phase", "displacement, mm"}, {}};
+    for (const auto& [phase, displacement] : found.profile)
+        knots.rows.push_back({plain_number(phase), plain_number(displacement, 5)});
+    page.tables.push_back(knots);
+    page.tables.push_back(swarm_table(search.swarm, found.simulations, found.stopped));
+    page.command = command;
+    return page;
+}
+
+}  // namespace cathlab
