@@ -119,6 +119,11 @@ WallSample sample_wall(const TriMesh& fine, const std::vector<Index>& fine_regio
     }
     std::sort(sample.links.begin(), sample.links.end());
     sample.links.erase(std::unique(sample.links.begin(), sample.links.end()), sample.links.end());
+    for (const Triangle& t : fine.triangles) {
+        const Triangle met(cells.label[at(t[0])], cells.label[at(t[1])], cells.label[at(t[2])]);
+        if (met.minCoeff() >= 0 && met[0] != met[1] && met[1] != met[2] && met[2] != met[0])
+            sample.triangles.push_back(met);
+    }
     return sample;
 }
 

@@ -19,6 +19,7 @@ struct WallSample {
     std::vector<double> thickness_mm;  ///< (n) of the wall there
     std::vector<Index> region;         ///< (n)
     std::vector<std::pair<Index, Index>> links;  ///< a < b, ascending: particles whose cells touch along the wall
+    std::vector<Triangle> triangles;             ///< of particles, outward: where three cells meet
 };
 
 /// The spacing that puts at least eight particles round a lumen: min(wanted, 2 pi radius / 9.5).

@@ -1,0 +1,112 @@
+#include "softbody/shell_statics.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+
+namespace cathlab {
+
+namespace {
+
+constexpr double largest_move_mm = 2.0;  // of a particle in an iteration
+constexpr int most_halvings = 25;
+constexpr double sufficient = 1e-4;  // part of the decrease that the slope promises (Armijo)
+
+}  // namespace
+
+ShellLoad dead_load(std::vector<Vec3> force) {
+    return
+        [load = std::move(force)](std::span<const Vec3> x, std::span<Vec3> out, std::vector<Eigen::Triplet<double>>&) {
+            double potential = 0.0;
+            for (std::size_t i = 0; i < load.size(); ++i) {
+                out[i] += load[i];
+                potential -= load[i].dot(x[i]);
+            }
+            return potential;
+        };
+}
+
+bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fixed, const ShellLoad& load,
+                       std::vector<Vec3>& x, const ShellRest& rest) {
+    const std::size_t n = model.particles;
+    CATHLAB_CHECK(fixed.size() == n && x.size() == n, "one place and one mark a particle");
+    std::vector<Index> place(n, -1);  // of a free particle among the unknowns
+    Index free = 0;
+    for (std::size_t i = 0; i < n; ++i)
+        if (!fixed[i]) place[i] = free++;
+    const auto unknown = [&](Eigen::Index row) { return place[static_cast<std::size_t>(row / 3)]; };
+
+    std::vector<Vec3> force(n), tried;
+    std::vector<Eigen::Triplet<double>> load_stiffness, entries;
+    const auto energy_at = [&](const std::vector<Vec3>& at, std::vector<Vec3>& on) {
+        std::fill(on.begin(), on.end(), Vec3::Zero());
+        load_stiffness.clear();
+        return shell_energy(model, at) + load(at, on, load_stiffness);
+    };
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+    Eigen::SparseMatrix<double> k(3 * free, 3 * free);
+    std::size_t pattern = 0;
+    double energy = energy_at(x, force);
+    for (int iteration = 0; iteration < rest.most_iterations; ++iteration) {
+        add_shell_forces(model, x, force);
+        Eigen::VectorXd residual(3 * free);
+        double largest = 0.0;
+        for (std::size_t i = 0; i < n; ++i) {
+            if (place[i] < 0) continue;
+            residual.segment<3>(3 * place[i]) = force[i];
+            largest = std::max(largest, force[i].norm());
+        }
+        if (!std::isfinite(largest)) return false;
+        if (largest < rest.force_tolerance_mn) return true;
+
+        entries.clear();
+        const auto add = [&](Eigen::Index r, Eigen::Index c, double value) {
+            if (unknown(r) < 0 || unknown(c) < 0) return;
+            entries.emplace_back(static_cast<int>(3 * unknown(r) + r % 3), static_cast<int>(3 * unknown(c) + c % 3),
+                                 value);
+        };
+        const Eigen::SparseMatrix<double> shell = shell_stiffness(model, x);
+        double diagonal = 0.0;
+        for (Eigen::Index c = 0; c < shell.outerSize(); ++c)
+            for (Eigen::SparseMatrix<double>::InnerIterator it(shell, c); it; ++it) {
+                add(it.row(), it.col(), it.value());
+                if (it.row() == it.col()) diagonal = std::max(diagonal, it.value());
+            }
+        for (const Eigen::Triplet<double>& t : load_stiffness)
+            if (t.row() >= t.col()) add(t.row(), t.col(), t.value());
+        // A little of the diagonal keeps a slack membrane's matrix definite; it changes the way, not the end.
+        for (Index i = 0; i < 3 * free; ++i)
+            entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1e-9 * diagonal);
+        k.setFromTriplets(entries.begin(), entries.end());
+        if (static_cast<std::size_t>(k.nonZeros()) != pattern) {
+            solver.analyzePattern(k);
+            pattern = static_cast<std::size_t>(k.nonZeros());
+        }
+        solver.factorize(k);
+        if (solver.info() != Eigen::Success) return false;
+        const Eigen::VectorXd step = solver.solve(residual);
+        double far = 0.0;
+        for (Index i = 0; i < free; ++i) far = std::max(far, step.segment<3>(3 * i).norm());
+        double share = std::min(1.0, largest_move_mm / std::max(far, 1e-300));
+        const double slope = residual.dot(step);
+        const double rounding = 1e-12 * std::fabs(energy);
+        for (int halving = 0;; ++halving) {
+            tried = x;
+            for (std::size_t i = 0; i < n; ++i)
+                if (place[i] >= 0) tried[i] += share * step.segment<3>(3 * place[i]);
+            const double lower = energy_at(tried, force);
+            if (lower <= energy - sufficient * share * slope + rounding) {
+                energy = lower;
+                break;
+            }
+            if (halving == most_halvings) return false;
+            share *= 0.5;
+        }
+        x.swap(tried);
+    }
+    return false;
+}
+
+}  // namespace cathlab

@@ -1,0 +1,33 @@
+// Where a shell comes to rest under loads: Newton's method on its energy, by a sparse factorisation.  Slow and exact
+// where the wall's own solver is quick and stepped: for closed forms, calibrations and comparisons with finite
+// elements.
+#pragma once
+
+#include <Eigen/Sparse>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "softbody/shell.h"
+
+namespace cathlab {
+
+/// Adds a load's forces at x (mN) and what they change with x, minus their derivatives (mN/mm; both triangles, positive
+/// semi-definite), and returns its potential, uJ.
+using ShellLoad = std::function<double(std::span<const Vec3> x, std::span<Vec3> force,
+                                       std::vector<Eigen::Triplet<double>>& stiffness)>;
+
+/// A force that stays as it is, one a particle.
+ShellLoad dead_load(std::vector<Vec3> force);
+
+struct ShellRest {
+    double force_tolerance_mn = 1e-4;  ///< no free particle feels more
+    int most_iterations = 200;
+};
+
+/// Moves x to rest.  fixed: one a particle, 1 = held where x has it.  False where it does not come to rest.
+bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fixed, const ShellLoad& load,
+                       std::vector<Vec3>& x, const ShellRest& rest = {});
+
+}  // namespace cathlab

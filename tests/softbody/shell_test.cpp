@@ -1,0 +1,250 @@
+// The shell against closed forms: Hooke's law, rings, strips, bent plates, and what rigid motions must leave alone.
+#include "softbody/shell.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/units.h"
+#include "softbody/rig.h"
+#include "softbody/shell_statics.h"
+
+namespace cathlab {
+namespace {
+
+struct Sheet {
+    std::vector<Vec3> rest;
+    std::vector<Triangle> triangles;
+    std::vector<std::uint8_t> fixed;
+    double width = 0.0, length = 0.0;
+};
+
+/// A flat sheet in x (length) and y (width), its inner particles shaken off the lattice.
+Sheet sheet(double length, double width, double spacing, double shaken) {
+    Sheet out;
+    const int columns = static_cast<int>(std::lround(length / spacing)),
+              rows = 2 * static_cast<int>(std::lround(width / spacing / 2.0));
+    out.length = length;
+    out.width = width;
+    for (int r = 0; r <= rows; ++r)
+        for (int c = 0; c <= columns; ++c) {
+            const double odd = r % 2 == 1 && c > 0 && c < columns ? 0.5 : 0.0;
+            Vec3 p(length * (c + odd) / columns, width * r / rows, 0.0);
+            if (r > 0 && r < rows && c > 0 && c < columns) {
+                const Vec3 off = rig::random_vector(out.rest.size(), shaken * spacing);
+                p += Vec3(off.x(), off.y(), 0.0);
+            }
+            out.rest.push_back(p);
+        }
+    for (int r = 0; r < rows; ++r)
+        for (int c = 0; c < columns; ++c) {
+            const Index a = r * (columns + 1) + c, b = a + 1, d = a + columns + 1, e = d + 1;
+            if (r % 2 == 0) {
+                out.triangles.emplace_back(a, b, d);
+                out.triangles.emplace_back(b, e, d);
+            } else {
+                out.triangles.emplace_back(a, b, e);
+                out.triangles.emplace_back(a, e, d);
+            }
+        }
+    out.fixed.assign(out.rest.size(), 0);
+    return out;
+}
+
+/// A tube without ends; its triangles are those of the wall's particles.
+WallSample tube(double radius, double length, double spacing) {
+    TubeShape shape = rig::shape(radius, length, false);
+    shape.edge_mm = spacing / 3.0;
+    return tube_sample(shape, spacing, 1.0, 5);
+}
+
+TEST(Shell, ForcesAreTheGradientOfTheEnergy) {
+    const WallSample sample = tube(6.0, 12.0, 2.1);
+    const ShellMaterial material{.young_kpa = 800.0, .poisson = 0.4, .thickness_mm = 1.5};
+    const ShellModel shell = build_shell(sample.position, sample.triangles, {&material, 1});
+    std::vector<Vec3> x = sample.position;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += rig::random_vector(i, 0.4);
+    std::vector<Vec3> force(x.size(), Vec3::Zero());
+    add_shell_forces(shell, x, force);
+    for (std::size_t i = 0; i < x.size(); i += 7)
+        for (int axis = 0; axis < 3; ++axis) {
+            constexpr double d = 1e-6;
+            std::vector<Vec3> up = x, down = x;
+            up[i][axis] += d;
+            down[i][axis] -= d;
+            const double slope = (shell_energy(shell, up) - shell_energy(shell, down)) / (2.0 * d);
+            ASSERT_NEAR(force[i][axis], -slope, 1e-5 * std::max(1.0, force[i].norm())) << i << " " << axis;
+        }
+}
+
+TEST(Shell, RigidMotionsStoreNothingAndForcesAddUpToNothing) {
+    const WallSample sample = tube(6.0, 12.0, 2.1);
+    const ShellMaterial material;
+    const ShellModel shell = build_shell(sample.position, sample.triangles, {&material, 1});
+    const Quat turn = det::rotation_from_vector(Vec3(0.7, -1.1, 2.0));
+    std::vector<Vec3> x = sample.position;
+    for (Vec3& p : x) p = turn * p + Vec3(100, -50, 20);
+    EXPECT_NEAR(shell_energy(shell, x), 0.0, 1e-9);
+    std::vector<Vec3> force(x.size(), Vec3::Zero());
+    add_shell_forces(shell, x, force);
+    for (const Vec3& f : force) ASSERT_LT(f.norm(), 1e-8);
+
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += rig::random_vector(i, 0.5);
+    std::fill(force.begin(), force.end(), Vec3::Zero());
+    add_shell_forces(shell, x, force);
+    Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+    double size = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        sum += force[i];
+        moment += x[i].cross(force[i]);
+        size += force[i].norm();
+    }
+    EXPECT_LT(sum.norm(), 1e-12 * size);
+    EXPECT_LT(moment.norm(), 1e-12 * size * 150.0);
+}
+
+TEST(Shell, UniformStrainIsReproducedOnAnyTriangles) {
+    Sheet s = sheet(20.0, 12.0, 2.0, 0.25);
+    const ShellMaterial material{.young_kpa = 500.0, .poisson = 0.3, .thickness_mm = 1.0};
+    const ShellModel shell = build_shell(s.rest, s.triangles, {&material, 1});
+    Mat3 strain;
+    strain << 0.03, 0.01, 0.0, 0.01, -0.02, 0.0, 0.0, 0.0, 0.0;
+    std::vector<Vec3> wanted = s.rest, x;
+    for (std::size_t i = 0; i < s.rest.size(); ++i) {
+        wanted[i] += strain * s.rest[i];
+        const Vec3& p = s.rest[i];
+        s.fixed[i] = p.x() < 1e-9 || p.y() < 1e-9 || p.x() > s.length - 1e-9 || p.y() > s.width - 1e-9 ? 1 : 0;
+    }
+    x = s.rest;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        if (s.fixed[i]) x[i] = wanted[i];
+    ASSERT_TRUE(shell_equilibrium(shell, s.fixed, dead_load({}), x, {.force_tolerance_mn = 1e-9}));
+    for (std::size_t i = 0; i < x.size(); ++i) ASSERT_LT((x[i] - wanted[i]).norm(), 1e-9);
+}
+
+TEST(Shell, AStripUnderTensionFollowsHookeInLengthAndWidth) {
+    Sheet s = sheet(40.0, 8.0, 2.0, 0.25);
+    const ShellMaterial material{.young_kpa = 600.0, .poisson = 0.45, .thickness_mm = 1.2};
+    const ShellModel shell = build_shell(s.rest, s.triangles, {&material, 1});
+    // Held at x = 0 along x alone would need rollers: a force at either end, and three particles that stop rigid
+    // motion.
+    const double stress = 6.0;  // kPa: 1 % strain
+    std::vector<Vec3> load(s.rest.size(), Vec3::Zero());
+    for (const Triangle& t : s.triangles)
+        for (int k = 0; k < 3; ++k) {
+            const Index a = t[k], b = t[(k + 1) % 3];
+            const Vec3 &pa = s.rest[static_cast<std::size_t>(a)], &pb = s.rest[static_cast<std::size_t>(b)];
+            for (const double end : {0.0, s.length})
+                if (std::fabs(pa.x() - end) < 1e-9 && std::fabs(pb.x() - end) < 1e-9)
+                    for (const Index i : {a, b})
+                        load[static_cast<std::size_t>(i)].x() +=
+                            (end > 0.0 ? 0.5 : -0.5) * stress * material.thickness_mm * (pa - pb).norm();
+        }
+    s.fixed[s.rest.size() / 2] = 1;
+    std::vector<Vec3> x = s.rest;
+    ASSERT_TRUE(shell_equilibrium(shell, s.fixed, dead_load(load), x, {.force_tolerance_mn = 1e-7}));
+    double along = 0.0, across = 0.0;
+    for (const ShellTriangle& t : shell.triangles) {
+        // The rest frame of a triangle is its own: strain along x by the edges' true directions.
+        const auto corner = [&](const std::vector<Vec3>& p, int k) { return p[static_cast<std::size_t>(t.corner[k])]; };
+        Eigen::Matrix2d rest, now;
+        for (int k = 0; k < 2; ++k) {
+            rest.col(k) = (corner(s.rest, k + 1) - corner(s.rest, 0)).head<2>();
+            now.col(k) = (corner(x, k + 1) - corner(x, 0)).head<2>();
+        }
+        const Eigen::Matrix2d f = now * rest.inverse();
+        along += (f.col(0).norm() - 1.0) / static_cast<double>(shell.triangles.size());
+        across += (f.col(1).norm() - 1.0) / static_cast<double>(shell.triangles.size());
+    }
+    EXPECT_NEAR(along, stress / material.young_kpa, 0.03 * stress / material.young_kpa);
+    EXPECT_NEAR(across, -material.poisson * stress / material.young_kpa, 0.03 * stress / material.young_kpa);
+}
+
+TEST(Shell, ARingUnderPressureWidensAsAThinWallDoes) {
+    const double radius = 12.0, length = 30.0;
+    const WallSample sample = tube(radius, length, 2.1);
+    const ShellMaterial material{.young_kpa = 500.0, .poisson = 0.3, .thickness_mm = 1.0};
+    const ShellModel shell = build_shell(sample.position, sample.triangles, {&material, 1});
+    const double pressure = 0.4;  // kPa: hoop stress 4.8 kPa, strain 0.96 %
+    std::vector<Vec3> load(sample.position.size(), Vec3::Zero());
+    for (const Triangle& t : sample.triangles) {
+        Vec3 p[3];
+        for (int k = 0; k < 3; ++k) p[k] = sample.position[static_cast<std::size_t>(t[k])];
+        const Vec3 share = pressure / 6.0 * (p[1] - p[0]).cross(p[2] - p[0]);
+        for (int k = 0; k < 3; ++k) load[static_cast<std::size_t>(t[k])] += share;
+    }
+    std::vector<std::uint8_t> fixed(sample.position.size(), 0);
+    std::vector<Vec3> x = sample.position;
+    fixed[fixed.size() / 2] = 1;  // it floats: one particle stops it
+    ASSERT_TRUE(shell_equilibrium(shell, fixed, dead_load(load), x, {.force_tolerance_mn = 1e-6}));
+    double strain = 0.0;
+    int count = 0;
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& p : x) middle += p / static_cast<double>(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (std::fabs(sample.position[i].z() - 0.5 * length) > 6.0) continue;
+        strain += (x[i] - middle).head<2>().norm() / sample.position[i].head<2>().norm() - 1.0;
+        ++count;
+    }
+    EXPECT_NEAR(strain / count, pressure * radius / (material.young_kpa * material.thickness_mm),
+                0.03 * pressure * radius / material.young_kpa);
+}
+
+/// Largest drop of a cantilever plate under a line load at its end, over what bending theory says.
+double cantilever(double thickness, double spacing, double shaken) {
+    Sheet s = sheet(40.0, 24.0, spacing, shaken);
+    const ShellMaterial material{.young_kpa = 1000.0, .poisson = 0.0, .thickness_mm = thickness};
+    const ShellModel shell = build_shell(s.rest, s.triangles, {&material, 1});
+    const double stiffness = material.young_kpa * thickness * thickness * thickness / 12.0;
+    const double drop = 0.1, force = 3.0 * stiffness * drop / std::pow(s.length, 3);  // mN/mm of width
+    // Clamped: the first two columns are held.
+    std::vector<Vec3> load(s.rest.size(), Vec3::Zero());
+    double clamp = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < s.rest.size(); ++i) {
+        if (s.rest[i].x() < 1.2 * spacing) {
+            s.fixed[i] = 1;
+            clamp = std::max(clamp, s.rest[i].x());
+        }
+        if (s.rest[i].x() > s.length - 1e-9) sum += 1.0;
+    }
+    for (std::size_t i = 0; i < s.rest.size(); ++i)
+        if (s.rest[i].x() > s.length - 1e-9) load[i].z() = force * s.width / sum;
+    std::vector<Vec3> x = s.rest;
+    EXPECT_TRUE(shell_equilibrium(shell, s.fixed, dead_load(load), x, {.force_tolerance_mn = 1e-9}));
+    double found = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        if (s.rest[i].x() > s.length - 1e-9) found += x[i].z() / sum;
+    // The clamp ends somewhere in its last row of triangles.
+    const double free = s.length - clamp + 0.5 * spacing;
+    return found / (force * free * free * free / (3.0 * stiffness));
+}
+
+TEST(Shell, APlateBendsByTheCubeOfItsThickness) {
+    for (const double shaken : {0.0, 0.25})
+        for (const double thickness : {0.5, 1.0, 2.0}) {
+            const double ratio = cantilever(thickness, 2.0, shaken);
+            std::printf("thickness %.1f mm, shaken %.2f: %.4f of bending theory\n", thickness, shaken, ratio);
+            EXPECT_NEAR(ratio, 1.0, 0.1) << thickness;
+        }
+}
+
+TEST(Shell, ATubeRolledOutFlatStoresItsBending) {
+    // Uniform change of curvature: energy per area is D / (2 R^2), whatever the triangles.
+    const Sheet s = sheet(30.0, 20.0, 2.0, 0.25);
+    const ShellMaterial material{.young_kpa = 1000.0, .poisson = 0.3, .thickness_mm = 1.0};
+    const ShellModel shell = build_shell(s.rest, s.triangles, {&material, 1});
+    const double radius = 20.0, d = material.young_kpa / 12.0 / (1.0 - 0.09);
+    std::vector<Vec3> x = s.rest;
+    for (Vec3& p : x) p = Vec3(radius * std::sin(p.x() / radius), p.y(), radius * (1.0 - std::cos(p.x() / radius)));
+    double bent = 0.0, area = 0.0;
+    ShellModel thick = shell;  // without its membrane
+    for (ShellTriangle& t : thick.triangles) {
+        t.mu_kpa = t.lambda_kpa = 1e-12;
+        area += t.area_mm2;
+    }
+    bent = shell_energy(thick, x);
+    EXPECT_NEAR(bent / (0.5 * d / (radius * radius) * area), 1.0, 0.03);
+}
+
+}  // namespace
+}  // namespace cathlab
