@@ -1,0 +1,258 @@
+#include "softbody/push_rig.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+
+#include "core/check.h"
+#include "core/errors.h"
+#include "softbody/shell_statics.h"
+#include "softbody/tube.h"
+#include "softbody/wall_sample.h"
+
+namespace cathlab {
+
+namespace {
+
+constexpr double bed_kpa_per_mm = 8000.0;  // of the ball's springs: 1 N on 10 mm2 sinks in by 0.013 mm
+constexpr int parts = 5;                   // a triangle's edge is cut into so many for the contact's points
+constexpr double mesh_per_spacing = 0.4;   // edges of the fine surface, of the particles' spacing
+constexpr double force_tolerance_mn = 1e-2;
+constexpr int marker_rounds = 50;
+
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
+
+double longest_edge(const TriMesh& mesh) {
+    double longest = 0.0;
+    for (const Triangle& t : mesh.triangles)
+        for (int k = 0; k < 3; ++k)
+            longest = std::max(longest, (mesh.vertices[at(t[(k + 1) % 3])] - mesh.vertices[at(t[k])]).norm());
+    return longest;
+}
+
+/// Each triangle cut into four at the middles of its edges.
+TriMesh cut_in_four(const TriMesh& mesh) {
+    TriMesh out;
+    out.vertices = mesh.vertices;
+    std::map<std::pair<Index, Index>, Index> middle;
+    const auto between = [&](Index a, Index b) {
+        const auto [place, fresh] = middle.try_emplace(std::minmax(a, b), static_cast<Index>(out.vertices.size()));
+        if (fresh) out.vertices.emplace_back(0.5 * (mesh.vertices[at(a)] + mesh.vertices[at(b)]));
+        return place->second;
+    };
+    for (const Triangle& t : mesh.triangles) {
+        const Index ab = between(t[0], t[1]), bc = between(t[1], t[2]), ca = between(t[2], t[0]);
+        out.triangles.insert(out.triangles.end(), {Triangle(t[0], ab, ca), Triangle(ab, t[1], bc),
+                                                   Triangle(ca, bc, t[2]), Triangle(ab, bc, ca)});
+    }
+    return out;
+}
+
+/// Weights of the middles of parts^2 equal parts of a triangle.
+std::vector<Vec3> contact_points() {
+    std::vector<Vec3> out;
+    for (int i = 0; i < parts; ++i)
+        for (int j = 0; j < parts - i; ++j)
+            for (const double third : {1.0, 2.0}) {
+                if (third > 1.5 && j == parts - i - 1) continue;
+                const double a = (i + third / 3.0) / parts, b = (j + third / 3.0) / parts;
+                out.emplace_back(1.0 - a - b, a, b);
+            }
+    return out;
+}
+
+/// The ball's push: potential, forces, stiffness; `total` is its force on the wall.
+class Ball {
+public:
+    Ball(const ShellModel& shell, const Vec3& centre, double radius, double near)
+        : shell_(shell), centre_(centre), radius_(radius), near_(near), points_(contact_points()) {}
+
+    double operator()(std::span<const Vec3> x, std::span<Vec3> force, std::vector<Eigen::Triplet<double>>& stiffness,
+                      Vec3& total) const {
+        double potential = 0.0;
+        total.setZero();
+        for (const ShellTriangle& t : shell_.triangles) {
+            std::array<Vec3, 3> corner;
+            for (int k = 0; k < 3; ++k) corner[static_cast<std::size_t>(k)] = x[at(t.corner[k])];
+            if ((corner[0] - centre_).norm() > radius_ + near_) continue;
+            const double bed = bed_kpa_per_mm * t.area_mm2 / static_cast<double>(points_.size());
+            for (const Vec3& w : points_) {
+                const Vec3 off = w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2] - centre_;
+                const double distance = off.norm(), depth = radius_ - distance;
+                if (!(depth > 0.0) || !(distance > 0.0)) continue;
+                const Vec3 normal = off / distance, push = bed * depth * normal;
+                potential += 0.5 * bed * depth * depth;
+                total += push;
+                const Mat3 block = bed * normal * normal.transpose();
+                for (int i = 0; i < 3; ++i) {
+                    force[at(t.corner[i])] += w[i] * push;
+                    for (int j = 0; j < 3; ++j)
+                        for (int r = 0; r < 3; ++r)
+                            for (int c = 0; c < 3; ++c)
+                                stiffness.emplace_back(static_cast<int>(3 * t.corner[i] + r),
+                                                       static_cast<int>(3 * t.corner[j] + c),
+                                                       w[i] * w[j] * block(r, c));
+                }
+            }
+        }
+        return potential;
+    }
+
+private:
+    const ShellModel& shell_;
+    Vec3 centre_;
+    double radius_, near_;
+    std::vector<Vec3> points_;
+};
+
+/// A point that rides on a triangle: by its weights on the corners, and a height along their normals.
+class Marker {
+public:
+    Marker(const ShellModel& shell, std::span<const Vec3> rest, const Vec3& place) : shell_(shell) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < shell.triangles.size(); ++k) {
+            Vec3 middle = Vec3::Zero();
+            for (int c = 0; c < 3; ++c) middle += rest[at(shell.triangles[k].corner[c])] / 3.0;
+            const double distance = (middle - place).norm();
+            if (distance >= nearest) continue;
+            nearest = distance;
+            triangle_ = k;
+        }
+        // Newton on (weight of corner 1, of corner 2, height).
+        const std::vector<Vec3> normal = normals(rest);
+        for (int round = 0; round < marker_rounds; ++round) {
+            constexpr double d = 1e-6;
+            const Vec3 here = place_of(rest, normal, local_);
+            Mat3 slope;
+            for (int k = 0; k < 3; ++k) {
+                Vec3 moved = local_;
+                moved[k] += d;
+                slope.col(k) = (place_of(rest, normal, moved) - here) / d;
+            }
+            local_ += slope.inverse() * (place - here);
+        }
+    }
+    Vec3 place(std::span<const Vec3> x) const { return place_of(x, normals(x), local_); }
+
+private:
+    std::vector<Vec3> normals(std::span<const Vec3> x) const {
+        std::vector<Vec3> normal(x.size(), Vec3::Zero());
+        for (const ShellTriangle& t : shell_.triangles) {
+            const Vec3 area = (x[at(t.corner[1])] - x[at(t.corner[0])]).cross(x[at(t.corner[2])] - x[at(t.corner[0])]);
+            for (int k = 0; k < 3; ++k) normal[at(t.corner[k])] += area;
+        }
+        for (Vec3& n : normal) n.normalize();
+        return normal;
+    }
+    Vec3 place_of(std::span<const Vec3> x, const std::vector<Vec3>& normal, const Vec3& local) const {
+        const Triangle& corner = shell_.triangles[triangle_].corner;
+        const Vec3 weight(1.0 - local[0] - local[1], local[0], local[1]);
+        Vec3 point = Vec3::Zero(), up = Vec3::Zero();
+        for (int k = 0; k < 3; ++k) {
+            point += weight[k] * x[at(corner[k])];
+            up += weight[k] * normal[at(corner[k])];
+        }
+        return point + local[2] * up.normalized();
+    }
+
+    const ShellModel& shell_;
+    std::size_t triangle_ = 0;
+    Vec3 local_ = Vec3(1.0 / 3.0, 1.0 / 3.0, 0.0);
+};
+
+void require_above_zero(const char* what, double value) {
+    if (!(value > 0.0) || !std::isfinite(value))
+        throw UserError(std::string(what) + " is " + std::to_string(value) + "; above 0 is wanted");
+}
+
+}  // namespace
+
+TriMesh straight_lumen(double radius_mm, double length_mm, double spacing_mm) {
+    require_above_zero("the tube's radius, mm,", radius_mm);
+    require_above_zero("the tube's length, mm,", length_mm);
+    require_above_zero("the particle spacing, mm,", spacing_mm);
+    TubeShape shape;
+    shape.radius_mm = radius_mm;
+    shape.length_mm = length_mm;
+    shape.edge_mm = mesh_per_spacing * spacing_mm;
+    shape.closed = false;
+    return tube_mesh(shape);
+}
+
+PushedWall::PushedWall(const PushRig& rig)
+    : ball_radius_mm_(rig.ball_radius_mm + 0.5 * rig.thickness_mm), spacing_mm_(rig.particle_spacing_mm) {
+    require_above_zero("the wall's thickness, mm,", rig.thickness_mm);
+    require_above_zero("the ball's radius, mm,", rig.ball_radius_mm);
+    require_above_zero("the particle spacing, mm,", rig.particle_spacing_mm);
+    if (rig.lumen.empty()) throw UserError("the vessel's surface has no triangles");
+    TriMesh middle = rig.lumen;
+    const std::vector<Vec3> normal = vertex_normals(middle);
+    for (std::size_t v = 0; v < normal.size(); ++v) middle.vertices[v] += 0.5 * rig.thickness_mm * normal[v];
+    while (longest_edge(middle) > 1.5 * mesh_per_spacing * rig.particle_spacing_mm) middle = cut_in_four(middle);
+
+    const std::vector<double> spacing(middle.vertices.size(), rig.particle_spacing_mm);
+    const WallSample sample = sample_wall(middle, std::vector<Index>(middle.vertices.size(), 0), spacing,
+                                          std::vector<double>{rig.thickness_mm}, rig.seed);
+    rest_ = sample.position;
+    // Particles are sparse: those of the last row stand for the ring itself.
+    const double reach = 0.6 * rig.particle_spacing_mm;
+    for (const Vec3& p : rest_)
+        fixed_.push_back(std::any_of(rig.held.begin(), rig.held.end(), [&](const HeldDisc& disc) {
+            const Vec3 off = p - disc.center;
+            return std::fabs(off.dot(disc.normal)) <= disc.half_thickness_mm + reach &&
+                   off.norm() <= disc.radius_mm + reach;
+        }));
+    if (std::count(fixed_.begin(), fixed_.end(), 1) < 3)
+        throw UserError("the wall is held nowhere: no three particles lie within the discs of [[setup.fixed]]");
+    const ShellMaterial material{rig.young_kpa, rig.poisson, rig.thickness_mm};
+    shell_ = build_shell(rest_, sample.triangles, {&material, 1});
+}
+
+PushResult PushedWall::push(const Push& push, const std::function<bool()>& go_on) const {
+    PushResult out;
+    const std::size_t samples = push.ball_mm.size();
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    out.marker_mm.assign(samples, Vec3::Constant(unknown));
+    out.force_mn.assign(samples, unknown);
+    if (samples == 0) return out;
+    const Vec3& first = push.ball_mm.front();
+    const Vec3& farthest = *std::max_element(
+        push.ball_mm.begin(), push.ball_mm.end(),
+        [&](const Vec3& a, const Vec3& b) { return (a - first).squaredNorm() < (b - first).squaredNorm(); });
+    const Vec3 along = farthest == first ? Vec3(Vec3::Zero()) : Vec3((farthest - first).normalized());
+    const Marker marker(shell_, rest_, push.marker_mm);
+    std::vector<Vec3> x = rest_;
+    for (std::size_t k = 0; k < samples; ++k) {
+        // An elastic wall without friction does not remember the way: unloading is loading once more.
+        const auto met = std::find_if(push.ball_mm.begin(), push.ball_mm.begin() + static_cast<std::ptrdiff_t>(k),
+                                      [&](const Vec3& p) { return (p - push.ball_mm[k]).squaredNorm() < 1e-12; });
+        const auto known = static_cast<std::size_t>(met - push.ball_mm.begin());
+        if (known < k) {
+            out.marker_mm[k] = out.marker_mm[known];
+            out.force_mn[k] = out.force_mn[known];
+            continue;
+        }
+        const Ball ball(shell_, push.ball_mm[k], ball_radius_mm_, 4.0 * spacing_mm_);
+        Vec3 total = Vec3::Zero();
+        const ShellLoad load = [&](std::span<const Vec3> at_x, std::span<Vec3> force,
+                                   std::vector<Eigen::Triplet<double>>& stiffness) {
+            return ball(at_x, force, stiffness, total);
+        };
+        if ((go_on && !go_on()) ||
+            !shell_equilibrium(shell_, fixed_, load, x, {.force_tolerance_mn = force_tolerance_mn})) {
+            out.at_rest = false;
+            return out;
+        }
+        out.marker_mm[k] = marker.place(x);
+        out.force_mn[k] = total.dot(along);
+    }
+    return out;
+}
+
+}  // namespace cathlab

@@ -1,0 +1,68 @@
+// A vessel held at some places, a rigid ball pushed into its wall from inside, a marker on its outside: what a bench or
+// a finite-element model of a contact is, as an elastic shell at rest (softbody/shell.h).
+//
+// The shell is the wall's middle surface, half a thickness outside the lumen; so the ball is half a thickness larger.
+// It touches without friction, by a bed of springs so stiff that it sinks in by about a hundredth of a millimetre.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/mesh.h"
+#include "softbody/shell.h"
+
+namespace cathlab {
+
+/// Where the wall is held: within radius_mm of center and within half_thickness_mm of the plane through it.
+struct HeldDisc {
+    Vec3 center = Vec3::Zero();
+    Vec3 normal = Vec3::UnitZ();  ///< unit
+    double radius_mm = 0.0, half_thickness_mm = 0.0;
+};
+
+struct PushRig {
+    TriMesh lumen;  ///< mm, triangles outward; its ends may be open
+    double thickness_mm = 1.0, young_kpa = 1000.0, poisson = 0.49;
+    double ball_radius_mm = 2.5;
+    std::vector<HeldDisc> held;
+    double particle_spacing_mm = 2.5;
+    std::uint64_t seed = 1;
+};
+
+/// One push: where the ball's centre is, sample by sample, and the marker's place on the outside at rest.
+struct Push {
+    std::vector<Vec3> ball_mm;
+    Vec3 marker_mm = Vec3::Zero();
+};
+
+struct PushResult {
+    std::vector<Vec3> marker_mm;   ///< (samples)
+    std::vector<double> force_mn;  ///< (samples) of the ball on the wall, along the line from its first to its farthest
+                                   ///< place
+    bool at_rest = true;           ///< false where a sample did not come to rest: it and those after it are NaN
+};
+
+/// The rig built: const, may be used by many threads.
+class PushedWall {
+public:
+    /// Throws UserError: nothing to hold, numbers out of range, a mesh without triangles.
+    explicit PushedWall(const PushRig& rig);
+
+    /// Samples are solved in order, each from the one before; a place of the ball met before is taken from there.
+    /// go_on: asked before every sample; false ends the push as if it had not come to rest.
+    PushResult push(const Push& push, const std::function<bool()>& go_on = {}) const;
+
+    std::size_t particles() const { return rest_.size(); }
+
+private:
+    std::vector<Vec3> rest_;
+    std::vector<std::uint8_t> fixed_;
+    ShellModel shell_;
+    double ball_radius_mm_ = 0.0, spacing_mm_ = 0.0;
+};
+
+/// A straight open tube about z from 0, its mesh fine enough for the spacing.
+TriMesh straight_lumen(double radius_mm, double length_mm, double spacing_mm);
+
+}  // namespace cathlab

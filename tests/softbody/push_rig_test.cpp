@@ -1,0 +1,84 @@
+// A ball against a wall: forces balance, a stiff bed follows Hertz' geometry, the shape of the answer is that of a
+// shell.
+#include "softbody/push_rig.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/errors.h"
+
+namespace cathlab {
+namespace {
+
+PushRig tube_rig() {
+    PushRig rig;
+    rig.particle_spacing_mm = 3.0;
+    rig.lumen = straight_lumen(12.0, 60.0, rig.particle_spacing_mm);
+    rig.thickness_mm = 1.5;
+    rig.young_kpa = 1200.0;
+    for (const double z : {0.0, 60.0}) rig.held.push_back({Vec3(0, 0, z), Vec3::UnitZ(), 15.0, 0.1});
+    return rig;
+}
+
+/// In steps of 0.5 mm from just touching along +x at mid-length.
+Push outward(double depth) {
+    Push push;
+    for (double d = 0.0; d <= depth + 1e-9; d += 0.5) push.ball_mm.emplace_back(12.0 - 2.5 + d, 0.0, 30.0);
+    push.marker_mm = Vec3(13.5, 0.0, 30.0);
+    return push;
+}
+
+TEST(PushRig, TheWallGoesWhereTheBallGoesAndPushesBackHarderTheFurther) {
+    const PushedWall wall(tube_rig());
+    const PushResult result = wall.push(outward(2.0));
+    ASSERT_TRUE(result.at_rest);
+    EXPECT_NEAR(result.force_mn.front(), 0.0, 5.0);
+    for (std::size_t k = 1; k < result.force_mn.size(); ++k) {
+        EXPECT_GT(result.force_mn[k], result.force_mn[k - 1]);
+        // The marker sits opposite the ball: it rises as far, less what the ball sinks in.
+        EXPECT_NEAR(result.marker_mm[k].x() - 13.5, 0.5 * static_cast<double>(k), 0.12) << k;
+    }
+}
+
+TEST(PushRig, ForceIsProportionalToTheModulus) {
+    PushRig rig = tube_rig();
+    const double soft = PushedWall(rig).push(outward(1.0)).force_mn.back();
+    rig.young_kpa *= 2.0;
+    const double stiff = PushedWall(rig).push(outward(1.0)).force_mn.back();
+    EXPECT_NEAR(stiff / soft, 2.0, 0.06);  // the bed of the ball does not stiffen with it
+}
+
+TEST(PushRig, UnloadingIsLoadingOnceMore) {
+    const PushedWall wall(tube_rig());
+    Push push = outward(1.0);
+    push.ball_mm.push_back(push.ball_mm[1]);
+    const PushResult result = wall.push(push);
+    EXPECT_EQ(result.force_mn.back(), result.force_mn[1]);
+    EXPECT_EQ(result.marker_mm.back(), result.marker_mm[1]);
+}
+
+TEST(PushRig, WhatIsHeldNowhereOrHasNoSizeIsTold) {
+    PushRig rig = tube_rig();
+    rig.held.clear();
+    EXPECT_THROW(PushedWall{rig}, UserError);
+    rig = tube_rig();
+    rig.thickness_mm = 0.0;
+    EXPECT_THROW(PushedWall{rig}, UserError);
+    rig = tube_rig();
+    rig.lumen = {};
+    EXPECT_THROW(PushedWall{rig}, UserError);
+    rig = tube_rig();
+    rig.young_kpa = -1.0;
+    EXPECT_THROW(PushedWall{rig}, UserError);
+}
+
+TEST(PushRig, APushThatIsStoppedSaysSo) {
+    const PushedWall wall(tube_rig());
+    const PushResult result = wall.push(outward(1.0), [] { return false; });
+    EXPECT_FALSE(result.at_rest);
+    EXPECT_TRUE(std::isnan(result.force_mn.back()));
+}
+
+}  // namespace
+}  // namespace cathlab
