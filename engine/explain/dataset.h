@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/errors.h"
 #include "core/types.h"
 
 namespace cathlab {
@@ -40,12 +41,30 @@ struct WallTensionSetup {
     double thickness_mm = 0.0;
 };
 
+/// A part of the wall that is held: within radius_mm of center_mm and half_thickness_mm of the plane through it.
+struct HeldPlace {
+    std::string name;
+    Vec3 center_mm = Vec3::Zero(), normal = Vec3::UnitZ();
+    double radius_mm = 0.0, half_thickness_mm = 0.0;
+};
+
+struct WallContactSetup {
+    std::string mesh;        ///< path of the lumen's surface, mm; empty = a tube about z from 0
+    SourcePlace mesh_place;  ///< for errors
+    double tube_radius_mm = 0.0, tube_length_mm = 0.0;  ///< of the lumen
+    double thickness_mm = 0.0, tool_radius_mm = 0.0;
+    std::vector<Vec3> sensor_rest_mm;  ///< (runs) on the outer wall
+    double young_modulus_kpa = 0.0, poisson = 0.0;
+    std::vector<HeldPlace> held;
+};
+
 struct Dataset {
     std::string folder, kind, title, source, license;
     std::vector<std::string> declared_effects;
     double sensor_noise = 0.0;  ///< root mean square a measured column, in the column's unit; 0 = not known
     HeartMotionSetup heart;     ///< filled for kind heart-motion
     WallTensionSetup wall;      ///< filled for kind wall-tension
+    WallContactSetup contact;   ///< filled for kind wall-contact
 
     std::vector<Index> run;  ///< (rows) 0, 1, ... in order of appearance; all 0 where there is no column `run`
     std::vector<std::string> run_names;  ///< as the file has them

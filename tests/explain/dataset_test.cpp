@@ -100,6 +100,41 @@ TEST(Dataset, ABadDescriptionIsNamedByFileLineAndKey) {
     EXPECT_THROW(read_dataset("/no/such/folder"), UserError);
 }
 
+TEST(Dataset, AContactsRigIsReadAndItsFaultsAreNamed) {
+    const std::string head =
+        "format = 1\nkind = \"wall-contact\"\ntitle = \"t\"\nsource = \"s\"\nlicense = \"l\"\n"
+        "declared_effects = []\nsensor_noise = 0.0\n[setup]\n";
+    const std::string setup =
+        "tube = { radius_mm = 12.0, length_mm = 200.0, thickness_mm = 1.5 }\ntool_radius_mm = 2.5\n"
+        "sensor_rest_mm = [[13.5, 0.0, 90.0]]\n"
+        "material = { law = \"neo-hooke\", young_modulus_kpa = 1200.0, poisson = 0.49 }\ndensity_kg_m3 = 1100.0\n"
+        "[[setup.fixed]]\nname = \"start\"\ncenter_mm = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 2.0]\n"
+        "radius_mm = 14.5\nhalf_thickness_mm = 0.1\n";
+    const std::string csv = "run,t_s,tool_x_mm,tool_y_mm,tool_z_mm,sensor_x_mm,sensor_y_mm,sensor_z_mm,force_n\n" +
+                            rows(9, "9,0,90,13,0,90,1");
+    const Folder folder(head + setup, csv);
+    const WallContactSetup rig = read_dataset(folder.path()).contact;
+    EXPECT_EQ(rig.tube_radius_mm, 12.0);
+    EXPECT_EQ(rig.thickness_mm, 1.5);
+    EXPECT_EQ(rig.sensor_rest_mm.at(0), Vec3(13.5, 0.0, 90.0));
+    EXPECT_EQ(rig.held.at(0).normal, Vec3::UnitZ());
+    EXPECT_EQ(rig.young_modulus_kpa, 1200.0);
+
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string out = setup;
+        out.replace(out.find(from), from.size(), to);
+        return head + out;
+    };
+    expect_says(with("tube = {", "tub = {"), csv, "did you mean 'tube'");
+    expect_says(with("radius_mm = 12.0", "radius_mm = -12.0"), csv, "above 0 is wanted");
+    expect_says(with("neo-hooke", "neo-hoke"), csv, "did you mean 'neo-hooke'");
+    expect_says(with("poisson = 0.49", "poisson = 0.5"), csv, "0 to 0.4999 is wanted");
+    expect_says(with("[[13.5, 0.0, 90.0]]", "[[13.5, 0.0]]"), csv, "three numbers are wanted");
+    expect_says(with("[[13.5, 0.0, 90.0]]", "[]"), csv, "found 0 places for 1 runs");
+    expect_says(with("normal = [0.0, 0.0, 2.0]", "normal = [0.0, 0.0, 0.0]"), csv, "no direction");
+    expect_says(with("tube = { radius_mm = 12.0, length_mm = 200.0, thickness_mm = 1.5 }\n", ""), csv, "mesh");
+}
+
 TEST(Dataset, EveryRunShowsItselfInBothPartsOfTheSplit) {
     std::string csv = good_header;
     for (int run = 0; run < 3; ++run)
