@@ -6,6 +6,8 @@
 #include "calibrate/report.h"
 #include "calibrate_output.h"
 #include "commands.h"
+#include "contact_check.h"
+#include "core/errors.h"
 #include "progress.h"
 #include "run_options.h"
 #include "scene/load_scene.h"
@@ -25,6 +27,8 @@ struct WallOptions : CommonOptions {
     std::vector<std::string> free;
     std::string stress = "hoop";
     std::string range;
+    int polish = WallSearch{}.polish_evaluations;
+    ContactCheck contact;
 };
 
 struct HeartOptions : CommonOptions {
@@ -41,6 +45,16 @@ void require_finite(const CommonOptions& options) {
     cathlab::require_finite("--eta2", options.swarm.eta2);
 }
 
+// What is wrong with --free is wrong use, though it is a scene that says what there is.
+Bound free_bound(const std::string& text) {
+    const FreeRange range = parse_free(text);
+    try {
+        return named_bound(range.path, range.low, range.high);
+    } catch (const UserError& error) {
+        throw UserError("--free: " + std::string(error.what()), true);
+    }
+}
+
 void say_end(bool stopped, const CalibrationOutput& output, AppContext& context) {
     std::printf("written: %s\n", output.places().c_str());
     if (!stopped) return;
@@ -55,10 +69,7 @@ std::string best_text(const char* what, double value, const char* unit) {
 void calibrate(const WallOptions& options, AppContext& context) {
     require_finite(options);
     WallSearch search;
-    for (const std::string& text : options.free) {
-        const FreeRange range = parse_free(text);
-        search.free.push_back(named_bound(range.path, range.low, range.high));
-    }
+    for (const std::string& text : options.free) search.free.push_back(free_bound(text));
     StressStrain reference = read_stress_strain(options.reference);
     if (!options.range.empty()) {
         const auto [low, high] = parse_range("--range", options.range);
@@ -76,6 +87,7 @@ void calibrate(const WallOptions& options, AppContext& context) {
     catch_stop_signals();
     Progress progress("calibrating the wall");
     search.swarm = options.swarm;
+    search.polish_evaluations = options.polish;
     const double all = search.swarm.particles * (search.swarm.generations + 1.0) + search.polish_evaluations;
     double best = 0.0;
     int done = 0;
@@ -116,6 +128,7 @@ void calibrate(const HeartOptions& options, AppContext& context) {
     search.reach_mm = options.reach_mm;
     search.at_peaks = options.objective == "peaks";
     search.swarm = options.swarm;
+    check(search);
     const CalibrationOutput output(options.out, options.report);
 
     catch_stop_signals();
@@ -186,7 +199,13 @@ void add_calibrate_command(CLI::App& app, AppContext& context) {
     wall->swarm.generations = 20;
     wall->swarm.threads = default_threads();
     CLI::App* wall_command = command->add_subcommand("wall", "The wall, to a curve of stress and strain");
-    wall_command->add_option("REFERENCE", wall->reference, "CSV with stress_kpa (or _mpa, _pa) and strain")->required();
+    wall_command->add_option("REFERENCE", wall->reference, "CSV with stress_kpa (or _mpa, _pa) and strain");
+    wall_command->add_option(
+        "--contact", wall->contact.folder,
+        "a wall-contact data set to compare with instead; its material is given, nothing is fitted");
+    wall_command->add_option("--spacing", wall->contact.particle_spacing_mm, "of the particles with --contact, mm")
+        ->check(CLI::Range(0.5, 10.0))
+        ->capture_default_str();
     wall_command->add_option("--scene", wall->scene, "gives [wall] and the effects to begin with; else the rig's own");
     wall_command
         ->add_option("--free", wall->free,
@@ -201,8 +220,19 @@ void add_calibrate_command(CLI::App& app, AppContext& context) {
         ->check(CLI::IsMember({"hoop", "nominal", "paper"}))
         ->capture_default_str();
     wall_command->add_option("--range", wall->range, "LOW:HIGH, kPa: only these rows of the reference");
+    wall_command->add_option("--polish", wall->polish, "curves of the local search after the swarm; 0 = none")
+        ->check(CLI::Range(0, 100000))
+        ->capture_default_str();
     add_common(*wall_command, *wall);
-    wall_command->callback([wall, &context] { calibrate(*wall, context); });
+    wall_command->callback([wall, &context] {
+        if (wall->reference.empty() == wall->contact.folder.empty())
+            throw UserError("calibrate wall wants a REFERENCE.csv, or --contact DATASET", true);
+        wall->contact.threads = wall->swarm.threads;
+        if (wall->contact.folder.empty())
+            calibrate(*wall, context);
+        else
+            check_contacts(wall->contact, context);
+    });
 
     const auto heart = std::make_shared<HeartOptions>();
     heart->scene = "demo";
@@ -225,8 +255,10 @@ void add_calibrate_command(CLI::App& app, AppContext& context) {
     heart_command->add_option("--knots", heart->knots, "of the profile")
         ->check(CLI::Range(4, 64))
         ->capture_default_str();
-    heart_command->add_option("--reach", heart->reach_mm, "mm that the swarm looks to either side of its start")
-        ->check(CLI::Range(0.001, 20.0))
+    heart_command
+        ->add_option("--reach", heart->reach_mm,
+                     "mm that the swarm looks to either side of its start; 0 = three times the RMSE there")
+        ->check(CLI::Range(0.0, 20.0))
         ->capture_default_str();
     heart_command->add_option("--beats", heart->beats, "that count, after one more")
         ->check(CLI::Range(1, 20))

@@ -192,9 +192,11 @@ private:
 
     void swarm() {
         Problem problem;
+        const double rmse = figures_of(best_motion_.z_mm, reference_at(best_motion_)).rmse;
+        out_.reach_mm = search_.reach_mm > 0.0 ? search_.reach_mm : std::clamp(3.0 * rmse, 0.05, 5.0);
         for (const auto& [phase, displacement] : best_) {
-            problem.bounds.push_back({std::max(-most_mm, displacement - search_.reach_mm),
-                                      std::min(most_mm, displacement + search_.reach_mm), "profile"});
+            problem.bounds.push_back({std::max(-most_mm, displacement - out_.reach_mm),
+                                      std::min(most_mm, displacement + out_.reach_mm), "profile"});
             problem.start.push_back(displacement);
         }
         out_.free = problem.bounds;
@@ -245,17 +247,18 @@ private:
     double best_value_ = infinite;
 };
 
-void check_search(const HeartSearch& search) {
+}  // namespace
+
+void check(const HeartSearch& search) {
     check(search.target.motion);
     const SourcePlace here{"calibrate heart", 0, ""};
     require_range(here, "knots", search.knots, 4, 64);
-    require_range(here, "reach_mm", search.reach_mm, 1e-3, 20.0);
+    require_range(here, "reach_mm", search.reach_mm, 0.0, 20.0);
     require_range(here, "beats", search.beats, 1, 20);
     if (!search.scene.heart.enabled)
-        throw UserError(search.scene.heart.where, "the scene has no heart: [heart] enabled = true is wanted");
+        throw UserError({search.scene.path, search.scene.heart.where.line, "[heart]"},
+                        "the scene has no heart: [heart] enabled = true is wanted");
 }
-
-}  // namespace
 
 AnnulusTarget annulus_target(const BeatMotion& reference, bool towards_apex) {
     check(reference);
@@ -308,7 +311,7 @@ AnnulusMotion annulus_motion(const SceneSpec& scene, const SceneModels& models, 
 }
 
 HeartCalibration calibrate_heart(const HeartSearch& search, const SceneModels& models) {
-    check_search(search);
+    check(search);
     try {
         return Calibration(search, models).run();
     } catch (const Stopped&) {

@@ -30,13 +30,17 @@ struct HeartSearch {
     SceneSpec scene;
     AnnulusTarget target;
     int knots = 16;         ///< of the profile, 4 to 64; placed where the reference bends most
-    double reach_mm = 1.0;  ///< the swarm looks this far to either side of its start, (0, 20]
+    double reach_mm = 0.0;  ///< the swarm looks this far to either side of its start, 0 to 20; 0 = 3 RMSE there
     bool at_peaks = false;  ///< objective: the error at the peaks of each beat (and a tenth of the RMSE); else the RMSE
     int beats = 3;          ///< that count, 1 to 20; one more goes before them
     SwarmOptions swarm;
     std::function<bool()> stop;                          ///< asked while a world runs; true = end with the best so far
     std::function<void(int simulations)> on_simulation;  ///< before and after the swarm, which reports by itself
 };
+
+/// Throws UserError for a bad reference, options out of range, and a scene without a heart: what can be told before
+/// models are built.
+void check(const HeartSearch& search);
 
 /// The annulus over the beats that count, a sample a step.
 struct AnnulusMotion {
@@ -52,6 +56,7 @@ struct HeartCalibration {
     Figures figures_first, figures_start, figures;   ///< mm; start = where the swarm began
     std::vector<Bound> free;                         ///< of the swarm
     std::vector<double> best_history;                ///< objective after each generation
+    double reach_mm = 0.0;                           ///< of the swarm, as taken
     int simulations = 0;
     bool stopped = false;
     std::string overlay;  ///< TOML to lay over a scene
@@ -67,8 +72,8 @@ AnnulusMotion annulus_motion(const SceneSpec& scene, const SceneModels& models, 
 /// First the inverse: the annulus hangs on the cylinder and follows it nearly one to one, so a few Gauss-Newton steps
 /// with the profile's own derivatives, each one run, lead near the least squares.  From there a swarm over the knots,
 /// and the same steps once more.  `models` are those of heart_scene(search.scene), shared by all worlds.
-/// Throws UserError for options out of range, a scene without a heart or annulus, and where it is stopped before the
-/// first run was over.  Same result on any number of threads.
+/// Throws UserError as check() does, for an anatomy without an annulus, and where it is stopped before the first run
+/// was over.  Same result on any number of threads.
 HeartCalibration calibrate_heart(const HeartSearch& search, const SceneModels& models);
 
 }  // namespace cathlab

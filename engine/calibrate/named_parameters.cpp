@@ -38,6 +38,10 @@ std::vector<Found> all() {
     return out;
 }
 
+std::string with_unit(const std::string& text, const NamedParameter& named) {
+    return named.unit == "1" ? text : text + " " + named.unit;
+}
+
 Found find(const std::string& path) {
     std::vector<std::string> known;
     for (const Found& found : all()) {
@@ -94,7 +98,7 @@ void set_named(SceneSpec& scene, const std::string& path, double value) {
     const Found found = find(path);
     if (!std::isfinite(value) || value < found.named.minimum || value > found.named.maximum)
         throw UserError(path + " = " + number_text(value) + "; allowed: " + number_text(found.named.minimum) + " to " +
-                        number_text(found.named.maximum) + " " + found.named.unit);
+                        with_unit(number_text(found.named.maximum), found.named));
     std::size_t parameter = 0;
     if (SceneEffect* effect = effect_of(scene, path, parameter)) {
         effect->values.at(parameter) = value;
@@ -119,7 +123,7 @@ Bound named_bound(const std::string& path, double lower, double upper) {
     if (lower > upper) throw UserError(path + ": the range " + range + " is turned round");
     if (lower < named.minimum || upper > named.maximum)
         throw UserError(path + ": the range " + range + " leaves what a scene allows, " + number_text(named.minimum) +
-                        " to " + number_text(named.maximum) + " " + named.unit);
+                        " to " + with_unit(number_text(named.maximum), named));
     return {lower, upper, path};
 }
 

@@ -1,5 +1,6 @@
 #include "calibrate/report.h"
 
+#include <cmath>
 #include <numeric>
 
 namespace cathlab {
@@ -7,8 +8,14 @@ namespace {
 
 constexpr double percent = 100.0;
 
+// Three decimals of a millimetre or of a percent are as many as any measurement has.
+std::string figure(double value) {
+    constexpr double decimals = 1000.0;
+    return plain_number(std::round(value * decimals) / decimals, 6);
+}
+
 std::string plus_minus(double mean, double sd, double factor) {
-    return plain_number(factor * mean, 3) + " \xC2\xB1 " + plain_number(factor * sd, 3);
+    return figure(factor * mean) + " \xC2\xB1 " + figure(factor * sd);
 }
 
 std::vector<double> scaled(std::span<const double> values, double factor) {
@@ -67,7 +74,7 @@ std::string stress_text(RigStress stress) {
 
 PageTable figure_table(const Figures& first, const Figures& best, const std::string& unit, double factor) {
     const auto row = [&](const std::string& name, double a, double b) {
-        return std::vector<std::string>{name, plain_number(factor * a, 3), plain_number(factor * b, 3)};
+        return std::vector<std::string>{name, figure(factor * a), figure(factor * b)};
     };
     PageTable out{"Error, " + unit, {"", "first guess", "best"}, {}};
     out.rows.push_back(row("RMSE", first.rmse, best.rmse));
@@ -141,7 +148,7 @@ Page heart_page(const HeartSearch& search, const HeartCalibration& found, const 
         std::string("Objective: ") +
         (search.at_peaks ? "the error at the peaks of each beat, and a tenth of the RMSE." : "the RMSE.") +
         " The search begins at the inverse (three or so runs, RMSE " + plain_number(found.figures_start.rmse, 3) +
-        " mm); from there the swarm looked " + plain_number(search.reach_mm) + " mm to either side of each knot.");
+        " mm); from there the swarm looked " + plain_number(found.reach_mm, 2) + " mm to either side of each knot.");
     if (found.stopped) page.paragraphs.emplace_back("The search was stopped; this is the best that it had found.");
     page.tables.push_back(figure_table(found.figures_first, found.figures, "mm", mm));
 

@@ -110,6 +110,10 @@ std::vector<double> ticks_of(const Axis& axis, bool logarithmic) {
             const double at = decade + std::log10(step);
             if (at >= axis.low && at <= axis.high) out.push_back(at);
         }
+    if (out.size() > 2) return out;
+    out.clear();  // less than a decade
+    for (const double tick : round_ticks(std::pow(10.0, axis.low), std::pow(10.0, axis.high), about))
+        if (tick > 0.0) out.push_back(std::log10(tick));
     return out;
 }
 

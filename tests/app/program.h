@@ -1,8 +1,10 @@
 // The program as a user calls it.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <string>
@@ -23,6 +25,13 @@ inline Outcome call(const std::string& arguments, const std::string& environment
     const int status = ::pclose(pipe);
     out.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     return out;
+}
+
+/// One line, ended, that begins with the program's name.
+inline testing::AssertionResult one_sentence(const Outcome& outcome) {
+    const auto lines = std::count(outcome.text.begin(), outcome.text.end(), '\n');
+    if (lines == 1 && outcome.text.rfind("cathlab: ", 0) == 0) return testing::AssertionSuccess();
+    return testing::AssertionFailure() << outcome.text;
 }
 
 }  // namespace cathlab

@@ -10,13 +10,6 @@
 namespace cathlab {
 namespace {
 
-/// One line, ended, that begins with the program's name.
-testing::AssertionResult one_sentence(const Outcome& outcome) {
-    const auto lines = std::count(outcome.text.begin(), outcome.text.end(), '\n');
-    if (lines == 1 && outcome.text.rfind("cathlab: ", 0) == 0) return testing::AssertionSuccess();
-    return testing::AssertionFailure() << outcome.text;
-}
-
 TEST(Program, HelpAndVersionAreNoFaults) {
     EXPECT_EQ(call("--help").code, 0);
     EXPECT_EQ(call("run --help").code, 0);
