@@ -205,7 +205,7 @@ std::vector<double> pressure_strain(const PressureRig& rig, const SceneSpec& sce
     double last_stress = 0.0, before_last_stress = 0.0;
     for (const double stress : stress_kpa) {
         if (!before_last.empty() && last_stress != before_last_stress) {
-            const double t = (stress - last_stress) / (last_stress - before_last_stress);
+            const double t = std::clamp((stress - last_stress) / (last_stress - before_last_stress), -2.0, 2.0);
             for (std::size_t i = 0; i < last.size(); ++i) state.x[i] = last[i] + t * (last[i] - before_last[i]);
         }
         if (!come_to_rest(tube, rig, stress, stop)) {

@@ -20,7 +20,7 @@ enum class RigStress {
 
 /// Both ends are held; there is no device, no heart, and nothing around the tube.
 struct PressureRig {
-    TubeShape shape{.radius_mm = 12.0, .length_mm = 60.0, .edge_mm = 1.0, .closed = false};
+    TubeShape shape{.radius_mm = 12.0, .length_mm = 80.0, .edge_mm = 1.0, .closed = false};
     double thickness_mm = 1.0;
     RigStress stress = RigStress::hoop;
     std::uint64_t seed = 1;

@@ -92,7 +92,7 @@ TEST(PressureRig, IsTheTubeOfTheRigsScene) {
         load_scene(std::string(CATHLAB_SOURCE_DIR) + "/scenes/rigs/stress_strain.toml", {}, CATHLAB_SOURCE_DIR);
     const PressureRig rig = pressure_rig(scene);
     EXPECT_NEAR(rig.shape.radius_mm, 12.0, 1e-12);
-    EXPECT_NEAR(rig.shape.length_mm, 60.0, 1e-12);
+    EXPECT_NEAR(rig.shape.length_mm, 80.0, 1e-12);
     EXPECT_NEAR(rig.thickness_mm, 1.0, 1e-12);
     const SceneSpec demo = load_scene(std::string(CATHLAB_SOURCE_DIR) + "/scenes/demo.toml", {}, CATHLAB_SOURCE_DIR);
     EXPECT_NE(error_sentence([&] { pressure_rig(demo); }).find("one straight vessel"), std::string::npos);
