@@ -18,9 +18,8 @@ namespace cathlab {
 
 namespace {
 
-constexpr double bed_kpa_per_mm = 8000.0;  // of the ball's springs: 1 N on 10 mm2 sinks in by 0.013 mm
-constexpr int parts = 5;                   // a triangle's edge is cut into so many for the contact's points
-constexpr double mesh_per_spacing = 0.4;   // edges of the fine surface, of the particles' spacing
+constexpr int parts = 5;                  // a triangle's edge is cut into so many for the contact's points
+constexpr double mesh_per_spacing = 0.4;  // edges of the fine surface, of the particles' spacing
 constexpr double force_tolerance_mn = 1e-2;
 constexpr int marker_rounds = 50;
 
@@ -70,8 +69,13 @@ std::vector<Vec3> contact_points() {
 /// The ball's push: potential, forces, stiffness; `total` is its force on the wall.
 class Ball {
 public:
-    Ball(const ShellModel& shell, const Vec3& centre, double radius, double near)
-        : shell_(shell), centre_(centre), radius_(radius), near_(near), points_(contact_points()) {}
+    Ball(const ShellModel& shell, const Vec3& centre, double radius, double near, double bed_kpa_per_mm)
+        : shell_(shell),
+          centre_(centre),
+          radius_(radius),
+          near_(near),
+          bed_(bed_kpa_per_mm),
+          points_(contact_points()) {}
 
     double operator()(std::span<const Vec3> x, std::span<Vec3> force, std::vector<Eigen::Triplet<double>>& stiffness,
                       Vec3& total) const {
@@ -81,7 +85,7 @@ public:
             std::array<Vec3, 3> corner;
             for (int k = 0; k < 3; ++k) corner[static_cast<std::size_t>(k)] = x[at(t.corner[k])];
             if ((corner[0] - centre_).norm() > radius_ + near_) continue;
-            const double bed = bed_kpa_per_mm * t.area_mm2 / static_cast<double>(points_.size());
+            const double bed = bed_ * t.area_mm2 / static_cast<double>(points_.size());
             for (const Vec3& w : points_) {
                 const Vec3 off = w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2] - centre_;
                 const double distance = off.norm(), depth = radius_ - distance;
@@ -107,7 +111,7 @@ public:
 private:
     const ShellModel& shell_;
     Vec3 centre_;
-    double radius_, near_;
+    double radius_, near_, bed_;
     std::vector<Vec3> points_;
 };
 
@@ -186,7 +190,9 @@ TriMesh straight_lumen(double radius_mm, double length_mm, double spacing_mm) {
 }
 
 PushedWall::PushedWall(const PushRig& rig)
-    : ball_radius_mm_(rig.ball_radius_mm + 0.5 * rig.thickness_mm), spacing_mm_(rig.particle_spacing_mm) {
+    : ball_radius_mm_(rig.ball_radius_mm + 0.5 * rig.thickness_mm),
+      spacing_mm_(rig.particle_spacing_mm),
+      bed_kpa_per_mm_(rig.young_kpa / rig.thickness_mm) {
     require_above_zero("the wall's thickness, mm,", rig.thickness_mm);
     require_above_zero("the ball's radius, mm,", rig.ball_radius_mm);
     require_above_zero("the particle spacing, mm,", rig.particle_spacing_mm);
@@ -238,7 +244,7 @@ PushResult PushedWall::push(const Push& push, const std::function<bool()>& go_on
             out.force_mn[k] = out.force_mn[known];
             continue;
         }
-        const Ball ball(shell_, push.ball_mm[k], ball_radius_mm_, 4.0 * spacing_mm_);
+        const Ball ball(shell_, push.ball_mm[k], ball_radius_mm_, 4.0 * spacing_mm_, bed_kpa_per_mm_);
         Vec3 total = Vec3::Zero();
         const ShellLoad load = [&](std::span<const Vec3> at_x, std::span<Vec3> force,
                                    std::vector<Eigen::Triplet<double>>& stiffness) {
