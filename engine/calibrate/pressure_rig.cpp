@@ -20,9 +20,9 @@ namespace {
 
 constexpr double step_s = 0.005;
 constexpr double velocity_kept = 0.9;  // a step; bleeding moves no equilibrium
-constexpr int steps_a_look = 10;
-constexpr int most_looks = 400;
-constexpr double still_mm = 1e-4;  // the fastest particle in a look
+constexpr int steps_a_look = 5;
+constexpr int most_looks = 1000;
+constexpr double still_mm = 4e-4;  // the fastest particle in a look: the strain is then right to 3e-5
 constexpr double held_mm = 2.5;    // of either end
 constexpr int surface_particles = 6;
 

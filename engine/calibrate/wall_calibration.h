@@ -21,7 +21,7 @@ struct WallSearch {
     SceneSpec scene;  ///< the other numbers of [wall] and the effects
     PressureRig rig;
     SwarmOptions swarm;
-    int polish_evaluations = 40;           ///< of the local search after the swarm; 0 = none
+    int polish_evaluations = 30;           ///< of the local search after the swarm; 0 = none
     std::function<bool()> stop;            ///< asked while the rig runs; true = end soon with the best so far
     std::function<void(int done)> polish;  ///< told after each evaluation of the local search
 };

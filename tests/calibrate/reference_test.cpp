@@ -1,125 +1,194 @@
-#include "calibrate/reference.h"
-
+// The curves in assets/reference against what their headers say of them (docs/reference-data.md).
 #include <gtest/gtest.h>
 
-#include "scene/temporary_folder.h"
-
-using namespace cathlab;
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
 
 namespace {
 
-std::string curve_fault(const TemporaryFolder& folder, const std::string& text) {
-    const std::string path = folder.write("r.csv", text);
-    return error_sentence([&] { read_stress_strain(path); });
+/// A table of two columns under a header whose lines begin with '#'.
+struct ReferenceTable {
+    std::string header, columns;
+    std::map<std::string, double> constants;  ///< of the header's lines "#   name = number"
+    std::vector<double> x, y;
+};
+
+ReferenceTable read_reference(const std::string& name) {
+    ReferenceTable table;
+    std::ifstream file(std::string(CATHLAB_SOURCE_DIR) + "/assets/reference/" + name);
+    const std::regex constant(R"(#   (\w+) = ([-+.\d]+))");
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with('#')) {
+            table.header += line + '\n';
+            if (std::smatch m; std::regex_match(line, m, constant)) table.constants[m[1]] = std::stod(m[2]);
+        } else if (table.columns.empty()) {
+            table.columns = line;
+        } else {
+            std::istringstream row(line);
+            double x = 0.0, y = 0.0;
+            char comma = 0;
+            EXPECT_TRUE(row >> x >> comma >> y && comma == ',' && row.eof()) << name << ": " << line;
+            table.x.push_back(x), table.y.push_back(y);
+        }
+    }
+    return table;
 }
 
-std::string beat_fault(const TemporaryFolder& folder, const std::string& text) {
-    const std::string path = folder.write("b.csv", text);
-    return error_sentence([&] { read_beat_motion(path, 0.9); });
+const ReferenceTable& aorta() {
+    static const ReferenceTable table = read_reference("aorta-circumferential.csv");
+    return table;
 }
 
-#define EXPECT_SAYS(sentence, part)                                        \
-    do {                                                                   \
-        const std::string said = sentence;                                 \
-        EXPECT_NE(said.find(part), std::string::npos) << "said: " << said; \
-    } while (false)
+const ReferenceTable& annulus() {
+    static const ReferenceTable table = read_reference("annulus-displacement.csv");
+    return table;
+}
+
+/// Strain energy, kPa, of the law in the header of aorta-circumferential.csv at three principal stretches.
+double energy(const std::map<std::string, double>& c, double hoop, double axial, double radial) {
+    const double angle = c.at("angle_deg") * std::numbers::pi / 180.0;
+    const double i1 = hoop * hoop + axial * axial + radial * radial;
+    // Both families lie alike to the principal directions.
+    const double i5 =
+        std::pow(hoop, 4) * std::pow(std::cos(angle), 2) + std::pow(axial, 4) * std::pow(std::sin(angle), 2);
+    return c.at("matrix_weight_kpa") * c.at("matrix_factor") * (i1 - 3.0) +
+           c.at("exponential_weight_kpa") * (std::exp(c.at("exponential_factor") * (i1 - 3.0)) - 1.0) +
+           2.0 * c.at("fibre_weight_kpa") * c.at("fibre_factor") * (i5 - 1.0) * (i5 - 1.0);
+}
+
+/// Cauchy stress of a thin tube whose length is held: what the energy gains with the stretch, the wall thinning as the
+/// volume demands, times the stretch.
+double hoop_stress(const std::map<std::string, double>& c, double stretch) {
+    const double d = 1e-5;
+    const auto held = [&](double l) { return energy(c, l, 1.0, 1.0 / l); };
+    return stretch * (held(stretch + d) - held(stretch - d)) / (2.0 * d);
+}
+
+double at_phase(double phase) {
+    const auto found =
+        std::find_if(annulus().x.begin(), annulus().x.end(), [&](double p) { return std::abs(p - phase) < 1e-9; });
+    return found == annulus().x.end() ? std::nan("") : annulus().y[std::size_t(found - annulus().x.begin())];
+}
+
+double milliseconds(double phase) {
+    return phase * 60000.0 / annulus().constants.at("rate_bpm");
+}
+
+void expect_sources(const ReferenceTable& table, std::size_t at_least) {
+    std::ifstream file(std::string(CATHLAB_SOURCE_DIR) + "/docs/references.md");
+    std::stringstream references;
+    references << file.rdbuf();
+    const std::regex key(R"(\[([a-z]+\d{4}[a-z]?)\])");
+    std::map<std::string, int> keys;
+    for (std::sregex_iterator it(table.header.begin(), table.header.end(), key), end; it != end; ++it) ++keys[(*it)[1]];
+    EXPECT_GE(keys.size(), at_least);
+    for (const auto& [name, times] : keys)
+        EXPECT_NE(references.str().find("- [" + name + "] "), std::string::npos) << name;
+}
 
 }  // namespace
 
-TEST(Reference, ACurveIsReadInItsOwnUnitsAndPastOtherColumns) {
-    const TemporaryFolder folder;
-    const StressStrain kpa =
-        read_stress_strain(folder.write("a.csv",
-                                        "\xEF\xBB\xBF# source\r\n\r\nsample,stress_kpa,strain\r\nA, 0 ,0\r\n"
-                                        "A,+20,0.1\r\n# more\r\nA,4e1,0.15\r\n"));
-    EXPECT_EQ(kpa.stress_kpa, (std::vector{0.0, 20.0, 40.0}));
-    EXPECT_EQ(kpa.strain, (std::vector{0.0, 0.1, 0.15}));
-    EXPECT_EQ(kpa.line, (std::vector{4, 5, 7}));
-    const StressStrain mpa =
-        read_stress_strain(folder.write("b.csv", "strain_percent,stress_mpa\n0,0\n10,0.02\n15,0.04"));
-    EXPECT_NEAR(mpa.stress_kpa[2], 40.0, 1e-12);
-    EXPECT_NEAR(mpa.strain[2], 0.15, 1e-12);
+TEST(AortaReference, GoesFromNothingTo580KilopascalsInThirtyRisingRows) {
+    EXPECT_EQ(aorta().columns, "stress_kpa,strain");
+    ASSERT_EQ(aorta().x.size(), 30U);
+    for (std::size_t i = 0; i < 30; ++i) EXPECT_DOUBLE_EQ(aorta().x[i], 20.0 * double(i));
+    for (std::size_t i = 1; i < 30; ++i) EXPECT_GT(aorta().y[i], aorta().y[i - 1]);
+    EXPECT_DOUBLE_EQ(aorta().y[0], 0.0);
 }
 
-TEST(Reference, EitherDirectionIsRightAndTurningRoundIsNot) {
-    const TemporaryFolder folder;
-    EXPECT_EQ(curve_fault(folder, "stress_kpa,strain\n60,0.3\n40,0.2\n20,0.1\n"), "no error");
-    EXPECT_EQ(curve_fault(folder, "stress_kpa,strain\n-1,-0.3\n-2,-0.4\n-2,-0.41\n-3,-0.5\n"), "no error");
-    EXPECT_EQ(curve_fault(folder, "run,stress_kpa,strain\n0,1,0.1\n0,2,0.2\n1,2,0.2\n1,1,0.1\n"), "no error");
-    EXPECT_SAYS(curve_fault(folder, "stress_kpa,strain\n0,0\n20,0.1\n10,0.2\n"), "r.csv:4: stress: the stress turns");
-    EXPECT_SAYS(curve_fault(folder, "stress_kpa,strain\n0,0\n20,0.1\n20,0.2\n10,0.2\n"), "r.csv:5");
-    EXPECT_SAYS(curve_fault(folder, "run,stress_kpa,strain\n0,1,0.1\n1,5,0.2\n0,2,0.2\n0,1.5,0.1\n"), "r.csv:5");
+TEST(AortaReference, EveryRowObeysTheLawAndTheConstantsOfItsHeader) {
+    ASSERT_EQ(aorta().constants.size(), 7U);
+    EXPECT_NEAR(hoop_stress(aorta().constants, 1.0), 0.0, 1e-6);
+    for (std::size_t i = 1; i < aorta().x.size(); ++i)
+        EXPECT_NEAR(hoop_stress(aorta().constants, 1.0 + aorta().y[i]) / aorta().x[i], 1.0, 1e-3) << aorta().x[i];
 }
 
-TEST(Reference, HeadersThatDoNotFitAreToldWithTheNearestName) {
-    const TemporaryFolder folder;
-    const std::string rows = "0,0\n20,0.1\n40,0.2\n";
-    EXPECT_SAYS(curve_fault(folder, "stress_psi,strain\n" + rows),
-                "r.csv:1: stress_psi: is in an unknown unit; allowed: stress_kpa");
-    EXPECT_SAYS(curve_fault(folder, "stress,strain\n" + rows),
-                "stress: names no unit; allowed: stress_kpa, stress_mpa");
-    EXPECT_SAYS(curve_fault(folder, "stres_kpa,strain\n" + rows), "did you mean 'stress_kpa'?");
-    EXPECT_SAYS(curve_fault(folder, "stress_kpa,strian\n" + rows), "did you mean 'strain'?");
-    EXPECT_SAYS(curve_fault(folder, "stress_kpa,strain_furlongs\n" + rows), "unknown unit");
-    EXPECT_SAYS(curve_fault(folder, "stress_kpa,stress_kpa,strain\n0,0,0\n"), "a second column");
-    EXPECT_SAYS(curve_fault(folder, "stress_kpa,stress_mpa,strain\n0,0,0\n"), "one of them");
-    EXPECT_SAYS(curve_fault(folder, rows), "a line with the columns' names is wanted first");
-    EXPECT_SAYS(curve_fault(folder, "a,b\n" + rows), "no column for the stress among a, b");
+TEST(AortaReference, AWallThatIsStretchedFurtherIsStiffer) {
+    const std::vector<double>& strain = aorta().y;
+    for (std::size_t i = 2; i < strain.size(); ++i)
+        EXPECT_LT(strain[i] - strain[i - 1], strain[i - 1] - strain[i - 2]) << aorta().x[i];
 }
 
-TEST(Reference, RowsThatAreNoNumbersAreToldByLineAndColumn) {
-    const TemporaryFolder folder;
-    const std::string begin = "# c\nstress_kpa,strain\n0,0\n";
-    for (const char* cell : {"nan", "inf", "-inf", "1e999", "abc", "0x10", "1,5", "1 5", "--3", "+-3"})
-        EXPECT_SAYS(curve_fault(folder, begin + "20," + cell + "\n40,0.2\n"), "r.csv:4");
-    EXPECT_SAYS(curve_fault(folder, begin + "20,\n40,0.2\n"), "r.csv:4: strain: is empty");
-    EXPECT_SAYS(curve_fault(folder, begin + "20\n40,0.2\n"), "found 1 cells; the header has 2");
-    EXPECT_SAYS(curve_fault(folder, begin + "20,25\n40,0.2\n"), "strain_percent");
-    EXPECT_SAYS(curve_fault(folder, begin + "2e9,0.1\n4e9,0.2\n"), "allowed: -1e+06 to 1e+06 kPa");
-    EXPECT_SAYS(curve_fault(folder, "run,stress_kpa,strain\n0.5,1,0.1\n"), "a whole number");
+TEST(AortaReference, TheAssumedAngleOfTheFibresMattersLittle) {
+    std::map<std::string, double> along = aorta().constants, across = aorta().constants;
+    along["angle_deg"] = 0.0, across["angle_deg"] = 10.0;
+    for (std::size_t i = 1; i < aorta().x.size(); ++i) {
+        EXPECT_GT(hoop_stress(along, 1.0 + aorta().y[i]), aorta().x[i]);
+        EXPECT_LT(hoop_stress(along, 1.0 + aorta().y[i] - 0.0026), aorta().x[i]);
+        EXPECT_LT(hoop_stress(across, 1.0 + aorta().y[i]), aorta().x[i]);
+        EXPECT_GT(hoop_stress(across, 1.0 + aorta().y[i] + 0.0026), aorta().x[i]);
+    }
 }
 
-TEST(Reference, HostileFilesGetASentence) {
-    const TemporaryFolder folder;
-    EXPECT_SAYS(curve_fault(folder, ""), "is empty");
-    EXPECT_SAYS(curve_fault(folder, "# only\n# comments\n"), "is empty");
-    EXPECT_SAYS(curve_fault(folder, "stress_kpa,strain\n"), "has 0 rows");
-    EXPECT_SAYS(curve_fault(folder, "stress_kpa,strain\n0,0\n20,0.1\n"), "has 2 rows");
-    EXPECT_SAYS(curve_fault(folder, std::string("\0\1\2", 3)), "not a text file");
-    EXPECT_SAYS(curve_fault(folder, std::string(1000, '\x1b')), "?");
-    EXPECT_SAYS(curve_fault(folder, std::string(3000000, ',')), "more than 200 columns");
-    EXPECT_SAYS(curve_fault(folder, std::string((16U << 20U) + 1, 'x')), "larger than");
-    EXPECT_SAYS(error_sentence([&] { read_stress_strain(folder.path()); }), "folder");
-    EXPECT_SAYS(error_sentence([&] { read_stress_strain(folder.path("none.csv")); }), "none.csv");
-    EXPECT_LT(curve_fault(folder, std::string(100000, 'x') + "\n").size(), 400U);
+TEST(AortaReference, NamesSourcesThatAreListed) {
+    expect_sources(aorta(), 2);
 }
 
-TEST(Reference, ABeatIsReadByPhaseOrByTime) {
-    const TemporaryFolder folder;
-    const BeatMotion phase =
-        read_beat_motion(folder.write("p.csv", "phase,displacement_cm\n0,0\n0.25,0.5\n0.5,1\n0.75,0.5\n1,0\n"), 0.9);
-    EXPECT_NEAR(phase.displacement_mm[2], 10.0, 1e-12);
-    const BeatMotion time =
-        read_beat_motion(folder.write("t.csv", "t_ms,displacement_mm\n0,0\n225,5\n450,10\n675,5\n800,2\n"), 0.9);
-    EXPECT_NEAR(time.phase[2], 0.5, 1e-12);
-    EXPECT_NEAR(at_phase(phase, 0.375), 7.5, 1e-12);
-    EXPECT_NEAR(at_phase(phase, 2.375), 7.5, 1e-12);
-    EXPECT_NEAR(at_phase(phase, -0.125), 2.5, 1e-12);
-    EXPECT_NEAR(at_phase(time, 0.0), 0.0, 1e-12);
-    const double half_way = 0.5 * (800.0 / 900.0 + 1.0);  // over the end of the beat to the first row
-    EXPECT_NEAR(at_phase(time, half_way), 1.0, 1e-9);
+TEST(AnnulusReference, IsOneBeatThatClosesWithTheExcursionOfLife) {
+    EXPECT_EQ(annulus().columns, "phase,displacement_mm");
+    ASSERT_EQ(annulus().x.size(), 41U);
+    for (std::size_t i = 0; i < 41; ++i) EXPECT_NEAR(annulus().x[i], double(i) / 40.0, 1e-9);
+    EXPECT_DOUBLE_EQ(annulus().y.front(), annulus().y.back());
+    const auto [low, high] = std::minmax_element(annulus().y.begin(), annulus().y.end());
+    EXPECT_NEAR(*high - *low, 11.6, 1e-9);
+    EXPECT_DOUBLE_EQ(annulus().constants.at("excursion_mm"), 11.6);
 }
 
-TEST(Reference, ABadBeatIsToldByItsRow) {
-    const TemporaryFolder folder;
-    const std::string rows = "0,0\n0.2,5\n0.4,8\n0.6,4\n";
-    EXPECT_SAYS(beat_fault(folder, "phase,displacement_mm\n" + rows), "at least 5");
-    EXPECT_SAYS(beat_fault(folder, "phase,displacement_mm\n" + rows + "0.5,1\n"), "b.csv:6: phase");
-    EXPECT_SAYS(beat_fault(folder, "phase,displacement_mm\n" + rows + "1.2,1\n"), "b.csv:6: phase");
-    EXPECT_SAYS(beat_fault(folder, "phase,displacement_mm\n" + rows + "1,1\n"), "the same moment");
-    EXPECT_SAYS(beat_fault(folder, "phase,displacement_mm\n" + rows + "0.9,80\n"), "allowed: -40 to 40 mm");
-    EXPECT_SAYS(beat_fault(folder, "phase,displacement_um\n" + rows + "0.9,1\n"), "unknown unit");
-    EXPECT_SAYS(beat_fault(folder, "fase,displacement_mm\n" + rows + "0.9,1\n"), "did you mean 'phase'?");
-    EXPECT_SAYS(beat_fault(folder, "phase,t_s,displacement_mm\n0,0,0\n"), "one of them");
-    EXPECT_SAYS(beat_fault(folder, "t_s,displacement_mm\n" + rows + "1.1,1\n"), "one beat is wanted");
+TEST(AnnulusReference, GoesDownStandsReturnsRestsAndEndsWithTheAtriumAtTheStatedTimes) {
+    const auto& c = annulus().constants;
+    const double top = c.at("excursion_mm"), rest = c.at("atrial_share") * top;
+    for (std::size_t i = 0; i + 1 < annulus().x.size(); ++i) {
+        const double from = milliseconds(annulus().x[i]), to = milliseconds(annulus().x[i + 1]);
+        const double here = annulus().y[i], step = annulus().y[i + 1] - here;
+        const auto within = [&](const char* begin, const char* end) { return from >= c.at(begin) && to <= c.at(end); };
+        if (to <= c.at("down_begins_ms")) {
+            EXPECT_DOUBLE_EQ(here, 0.0) << from;
+        } else if (within("down_begins_ms", "down_ends_ms")) {
+            EXPECT_GT(step, 0.0) << from;
+        } else if (within("down_ends_ms", "return_begins_ms")) {
+            EXPECT_NEAR(here, top, 1e-9) << from;
+        } else if (within("return_begins_ms", "return_ends_ms")) {
+            EXPECT_LT(step, 0.0) << from;
+        } else if (within("return_ends_ms", "atrial_begins_ms")) {
+            EXPECT_NEAR(here, rest, 2e-3) << from;
+        } else if (from >= c.at("atrial_begins_ms")) {
+            EXPECT_LT(step, 0.0) << from;
+        }
+    }
+}
+
+TEST(AnnulusReference, TheTimesFollowFromTheirSources) {
+    const auto& c = annulus().constants;
+    const double rate = c.at("rate_bpm"), beat = 60000.0 / rate;
+    EXPECT_NEAR(rate, 3.0 * 60.0 / 2.68, 0.5);
+    EXPECT_NEAR(c.at("down_ends_ms"), 540.5 - 2.1 * rate - 40.0, 0.5);
+    EXPECT_NEAR(c.at("down_ends_ms") - c.at("down_begins_ms"), 292.0, 0.5);
+    EXPECT_NEAR(c.at("return_begins_ms") - c.at("down_ends_ms"), 96.0, 0.5);
+    EXPECT_NEAR(c.at("return_ends_ms") - c.at("return_begins_ms"), 2.0 * 96.0, 0.5);
+    EXPECT_NEAR(beat - c.at("atrial_begins_ms"), 160.0 + 40.0 - 90.0, 0.5);
+    EXPECT_NEAR(c.at("atrial_share"), 110.0 / (1.82 * 192.0 + 110.0), 1e-4);
+}
+
+TEST(AnnulusReference, IsHalfWayAtTheMiddleOfEachStage) {
+    // Between rows on a straight line, which a half cosine is in its middle.
+    const auto at = [](double ms) {
+        const double row = 40.0 * ms / milliseconds(1.0), before = std::floor(row);
+        return std::lerp(at_phase(before / 40.0), at_phase((before + 1.0) / 40.0), row - before);
+    };
+    const auto& c = annulus().constants;
+    const double top = c.at("excursion_mm"), rest = c.at("atrial_share") * top;
+    EXPECT_NEAR(at(0.5 * (c.at("down_begins_ms") + c.at("down_ends_ms"))), 0.5 * top, 0.05);
+    EXPECT_NEAR(at(0.5 * (c.at("return_begins_ms") + c.at("return_ends_ms"))), 0.5 * (top + rest), 0.05);
+    EXPECT_NEAR(at(0.5 * (c.at("atrial_begins_ms") + milliseconds(1.0))), 0.5 * rest, 0.05);
+}
+
+TEST(AnnulusReference, NamesSourcesThatAreListed) {
+    expect_sources(annulus(), 8);
 }
