@@ -195,8 +195,8 @@ void add_calibrate_command(CLI::App& app, AppContext& context) {
     command->require_subcommand(1);
 
     const auto wall = std::make_shared<WallOptions>();
-    wall->swarm.particles = 24;
-    wall->swarm.generations = 20;
+    wall->swarm.particles = 20;
+    wall->swarm.generations = 15;
     wall->swarm.threads = default_threads();
     CLI::App* wall_command = command->add_subcommand("wall", "The wall, to a curve of stress and strain");
     wall_command->add_option("REFERENCE", wall->reference, "CSV with stress_kpa (or _mpa, _pa) and strain");
@@ -237,7 +237,7 @@ void add_calibrate_command(CLI::App& app, AppContext& context) {
     const auto heart = std::make_shared<HeartOptions>();
     heart->scene = "demo";
     heart->swarm.particles = 12;
-    heart->swarm.generations = 8;
+    heart->swarm.generations = 5;
     heart->swarm.threads = default_threads();
     CLI::App* heart_command = command->add_subcommand("heart", "The heart's profile, to the motion of the annulus");
     heart_command
