@@ -12,7 +12,8 @@ namespace {
 
 constexpr double largest_move_mm = 2.0;  // of a particle in an iteration
 constexpr int most_halvings = 25;
-constexpr double sufficient = 1e-4;  // part of the decrease that the slope promises (Armijo)
+constexpr double worth_keeping = 0.3;  // factors that brought the largest force below this part of itself
+constexpr double sufficient = 1e-4;    // part of the decrease that the slope promises (Armijo)
 
 }  // namespace
 
@@ -47,8 +48,8 @@ bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fi
     };
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
     Eigen::SparseMatrix<double> k(3 * free, 3 * free);
-    std::size_t pattern = 0;
-    double energy = energy_at(x, force);
+    std::vector<int> pattern;  // rows of the matrix that the factorisation was laid out for
+    double energy = energy_at(x, force), before = 0.0;
     for (int iteration = 0; iteration < rest.most_iterations; ++iteration) {
         add_shell_forces(model, x, force);
         Eigen::VectorXd residual(3 * free);
@@ -61,31 +62,36 @@ bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fi
         if (!std::isfinite(largest)) return false;
         if (largest < rest.force_tolerance_mn) return true;
 
-        entries.clear();
-        const auto add = [&](Eigen::Index r, Eigen::Index c, double value) {
-            if (unknown(r) < 0 || unknown(c) < 0) return;
-            entries.emplace_back(static_cast<int>(3 * unknown(r) + r % 3), static_cast<int>(3 * unknown(c) + c % 3),
-                                 value);
-        };
-        const Eigen::SparseMatrix<double> shell = shell_stiffness(model, x);
-        double diagonal = 0.0;
-        for (Eigen::Index c = 0; c < shell.outerSize(); ++c)
-            for (Eigen::SparseMatrix<double>::InnerIterator it(shell, c); it; ++it) {
-                add(it.row(), it.col(), it.value());
-                if (it.row() == it.col()) diagonal = std::max(diagonal, it.value());
+        // Factors serve again while they bring the forces down: what they lack is mostly what they never had.
+        if (largest > worth_keeping * before) {
+            entries.clear();
+            const auto add = [&](Eigen::Index r, Eigen::Index c, double value) {
+                if (unknown(r) < 0 || unknown(c) < 0) return;
+                entries.emplace_back(static_cast<int>(3 * unknown(r) + r % 3), static_cast<int>(3 * unknown(c) + c % 3),
+                                     value);
+            };
+            const Eigen::SparseMatrix<double> shell = shell_stiffness(model, x);
+            double diagonal = 0.0;
+            for (Eigen::Index c = 0; c < shell.outerSize(); ++c)
+                for (Eigen::SparseMatrix<double>::InnerIterator it(shell, c); it; ++it) {
+                    add(it.row(), it.col(), it.value());
+                    if (it.row() == it.col()) diagonal = std::max(diagonal, it.value());
+                }
+            for (const Eigen::Triplet<double>& t : load_stiffness)
+                if (t.row() >= t.col()) add(t.row(), t.col(), t.value());
+            // A little of the diagonal keeps a slack membrane's matrix definite; it changes the way, not the end.
+            for (Index i = 0; i < 3 * free; ++i)
+                entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1e-9 * diagonal);
+            k.setFromTriplets(entries.begin(), entries.end());
+            const std::span<const int> rows(k.innerIndexPtr(), static_cast<std::size_t>(k.nonZeros()));
+            if (!std::equal(rows.begin(), rows.end(), pattern.begin(), pattern.end())) {
+                solver.analyzePattern(k);
+                pattern.assign(rows.begin(), rows.end());
             }
-        for (const Eigen::Triplet<double>& t : load_stiffness)
-            if (t.row() >= t.col()) add(t.row(), t.col(), t.value());
-        // A little of the diagonal keeps a slack membrane's matrix definite; it changes the way, not the end.
-        for (Index i = 0; i < 3 * free; ++i)
-            entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1e-9 * diagonal);
-        k.setFromTriplets(entries.begin(), entries.end());
-        if (static_cast<std::size_t>(k.nonZeros()) != pattern) {
-            solver.analyzePattern(k);
-            pattern = static_cast<std::size_t>(k.nonZeros());
+            solver.factorize(k);
+            if (solver.info() != Eigen::Success) return false;
         }
-        solver.factorize(k);
-        if (solver.info() != Eigen::Success) return false;
+        before = largest;
         const Eigen::VectorXd step = solver.solve(residual);
         double far = 0.0;
         for (Index i = 0; i < free; ++i) far = std::max(far, step.segment<3>(3 * i).norm());
