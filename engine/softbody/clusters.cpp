@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "core/check.h"
 #include "core/errors.h"
 #include "softbody/geodesic.h"
 
@@ -95,7 +96,7 @@ ClusterGroups<Real> pack(const Membership& lanes, const SoftBodyModel& model) {
         packed.first_slot[g + 1] = packed.first_slot[g] + static_cast<std::int32_t>(slots);
     }
     const auto slots = static_cast<std::size_t>(packed.first_slot.back());
-    packed.particle.assign(slots * n, 0);
+    packed.place.assign(slots * n, 0);
     packed.member.assign(slots * 4 * n, Real(0));
     packed.rest_centroid.assign(groups * 3 * n, 0.0);
     const auto weight = [&](Index i) {
@@ -117,19 +118,39 @@ ClusterGroups<Real> pack(const Membership& lanes, const SoftBodyModel& model) {
         for (std::size_t s = 0; s < count; ++s) {
             const std::size_t slot = first + s;
             if (s >= lanes[lane].size()) {
-                packed.particle[slot * n + l] = lanes[lane].front();
+                packed.place[slot * n + l] = 3 * lanes[lane].front();
                 continue;
             }
             const Index i = lanes[lane][s];
             const double w = weight(i) / total;
             const Vec3 moment = w * (model.rest[at(i)] - centroid);
-            packed.particle[slot * n + l] = i;
+            packed.place[slot * n + l] = 3 * i;
             for (std::size_t axis = 0; axis < 3; ++axis)
                 packed.member[(slot * 4 + axis) * n + l] = static_cast<Real>(moment[static_cast<Index>(axis)]);
             packed.member[(slot * 4 + 3) * n + l] = static_cast<Real>(w);
         }
     }
     return packed;
+}
+
+GoalSources goal_sources(const SoftBodyModel& model) {
+    constexpr std::size_t bytes = kernel::transform_doubles * sizeof(double), four = 4;
+    GoalSources goals;
+    goals.first.reserve(model.size() + 1);
+    goals.share.reserve(model.size());
+    goals.from.reserve(model.membership_count() + (four - 1) * model.size());
+    goals.first.push_back(0);
+    for (std::size_t i = 0; i < model.size(); ++i) {
+        for (Index m = model.cluster_start[i]; m < model.cluster_start[i + 1]; ++m)
+            goals.from.push_back(static_cast<std::int32_t>(at(model.cluster[at(m)]) * bytes));
+        CATHLAB_CHECK(model.cluster_start[i + 1] > model.cluster_start[i], "a particle without a cluster has no goal");
+        while (goals.from.size() % four != 0)
+            goals.from.push_back(static_cast<std::int32_t>(model.empty_lane() * bytes));
+        goals.first.push_back(static_cast<std::int32_t>(goals.from.size()));
+        goals.share.push_back(1.0 / (model.cluster_start[i + 1] - model.cluster_start[i]));
+    }
+    goals.from.shrink_to_fit();
+    return goals;
 }
 
 }  // namespace
@@ -186,6 +207,7 @@ void pack_clusters(const Membership& membership, SoftBodyModel& model) {
     for (std::size_t lane = 0; lane < lanes.size(); ++lane)
         for (const Index i : lanes[lane]) model.cluster[at(next[at(i)]++)] = static_cast<Index>(lane);
 
+    model.goals = goal_sources(model);
     if (model.precision == Precision::double_)
         model.clusters = pack<double>(lanes, model);
     else

@@ -1,38 +1,43 @@
 // The gather of goals, included once an instruction set, as kernel.inl is: GATHER its name.
-// The twelve numbers of a transform are added side by side, so their order of summation does not depend on the width.
-TARGET static void GATHER(const std::int32_t* start, const std::int32_t* cluster, const double* transform,
-                          const double* rest, double* goal, std::size_t begin, std::size_t end) {
-    constexpr std::size_t pieces = transform_doubles / BLOCK;
+// A transform's twelve numbers are added side by side, so their order of summation does not depend on the width.
+#define ADD_TRANSFORM(x, y, z, offset)                                             \
+    {                                                                              \
+        const char* column = reinterpret_cast<const char*>(transform) + (offset);  \
+        Column in_x, in_y, in_z; /* an array would go through memory */            \
+        __builtin_memcpy(&in_x, column, sizeof in_x);                              \
+        __builtin_memcpy(&in_y, column + sizeof in_x, sizeof in_y);                \
+        __builtin_memcpy(&in_z, column + 2 * sizeof in_x, sizeof in_z);            \
+        x += in_x;                                                                 \
+        y += in_y;                                                                 \
+        z += in_z;                                                                 \
+    }
+TARGET static void GATHER(const Goals& goals, const double* transform, const double* rest, double* goal,
+                          std::size_t begin, std::size_t end) {
+    using Column = double __attribute__((vector_size(4 * sizeof(double))));
+    const std::int32_t *const all = goals.from, *const first = goals.first;
+    const double* const share = goals.share;
+    const std::int32_t* from = all + first[begin];
     for (std::size_t i = begin; i < end; ++i) {
         // Even and odd clusters have sums of their own: one chain of additions would wait on itself.
-        Block sum[pieces] = {}, odd[pieces] = {};
-        std::int32_t m = start[i];
-        for (; m + 1 < start[i + 1]; m += 2) {
-            const double* from = transform + static_cast<std::size_t>(cluster[m]) * transform_doubles;
-            const double* next = transform + static_cast<std::size_t>(cluster[m + 1]) * transform_doubles;
-            for (std::size_t p = 0; p < pieces; ++p) {
-                Block part, other;
-                __builtin_memcpy(&part, from + p * BLOCK, sizeof part);
-                __builtin_memcpy(&other, next + p * BLOCK, sizeof other);
-                sum[p] += part;
-                odd[p] += other;
-            }
-        }
-        if (m < start[i + 1]) {
-            const double* from = transform + static_cast<std::size_t>(cluster[m]) * transform_doubles;
-            for (std::size_t p = 0; p < pieces; ++p) {
-                Block part;
-                __builtin_memcpy(&part, from + p * BLOCK, sizeof part);
-                sum[p] += part;
-            }
-        }
-        for (std::size_t p = 0; p < pieces; ++p) sum[p] += odd[p];
-        double mean[transform_doubles];
-        __builtin_memcpy(mean, sum, sizeof mean);
-        const double share = 1.0 / (start[i + 1] - start[i]);
+        Column x = {}, y = {}, z = {}, odd_x = {}, odd_y = {}, odd_z = {};
+        const std::int32_t* const last = all + first[i + 1];
+        do {  // in fours: the fewer ways to go, the better the processor foresees them
+            ADD_TRANSFORM(x, y, z, from[0])
+            ADD_TRANSFORM(odd_x, odd_y, odd_z, from[1])
+            ADD_TRANSFORM(x, y, z, from[2])
+            ADD_TRANSFORM(odd_x, odd_y, odd_z, from[3])
+            from += 4;
+        } while (from != last);
+        x += odd_x;
+        y += odd_y;
+        z += odd_z;
         const double* point = rest + 3 * i;
-        for (std::size_t k = 0; k < 3; ++k)
-            goal[3 * i + k] =
-                share * ((mean[k] * point[0] + mean[3 + k] * point[1] + mean[6 + k] * point[2]) + mean[9 + k]);
+        const Column high = __builtin_shufflevector(x, y, 1, 5, 3, 7), t = __builtin_shufflevector(high, z, 2, 3, 6, 7);
+        const Column moved = __builtin_shufflevector(t, t, 0, 1, 3, 3);
+        const Column mean = share[i] * ((x * point[0] + y * point[1] + z * point[2]) + moved);
+        const Pair first_two = __builtin_shufflevector(mean, mean, 0, 1);
+        __builtin_memcpy(goal + 3 * i, &first_two, sizeof first_two);
+        goal[3 * i + 2] = mean[2];
     }
 }
+#undef ADD_TRANSFORM

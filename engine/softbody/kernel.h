@@ -7,15 +7,16 @@
 
 namespace cathlab::kernel {
 
-inline constexpr std::size_t lanes = 8;               ///< clusters in a group
-inline constexpr std::size_t transform_doubles = 12;  ///< of a cluster: columns of R, then t; goal = R X + t
-inline constexpr int polar_rounds = 24;               ///< at most; a warm start ends after two or three
+inline constexpr std::size_t lanes = 8;  ///< clusters in a group
+inline constexpr std::size_t transform_doubles =
+    12;                                  ///< of a cluster: column k of R, then t_k, three times; goal = R X + t
+inline constexpr int polar_rounds = 24;  ///< at most; a warm start ends after two or three
 
 /// ClusterGroups (softbody/model.h) without its vectors.
 template <class Real>
 struct Groups {
     const std::int32_t* first_slot;
-    const std::int32_t* particle;
+    const std::int32_t* place;
     const Real* member;
     const double* rest_centroid;
 };
@@ -25,9 +26,15 @@ struct Groups {
 /// = (R, x_c - R X_c).
 using Fit = void (*)(const void* groups, const double* x, double* rotation, double* transform, std::size_t begin,
                      std::size_t end);
+/// GoalSources (softbody/model.h) without its vectors.
+struct Goals {
+    const std::int32_t* first;
+    const std::int32_t* from;
+    const double* share;
+};
 /// goal_i = mean over its clusters of R X_i + t for particles [begin, end).
-using Gather = void (*)(const std::int32_t* start, const std::int32_t* cluster, const double* transform,
-                        const double* rest, double* goal, std::size_t begin, std::size_t end);
+using Gather = void (*)(const Goals& goals, const double* transform, const double* rest, double* goal,
+                        std::size_t begin, std::size_t end);
 /// What a walk over the particles reads and writes (n, or n x 3); what the model does not have is null.
 struct Particles {
     const double *mass, *stiffness, *stiffness_scale, *support, *drag, *rest;

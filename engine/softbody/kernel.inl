@@ -111,28 +111,44 @@ TARGET static void NAMED(fit)(const void* groups, const double* x, double* rotat
             constexpr std::size_t blocks = WIDTH / BLOCK;
             Block origin[blocks][3];
             for (std::size_t k = 0; k < blocks; ++k)
-                places(x, view.particle + first * lanes + half + k * BLOCK, origin[k][0], origin[k][1], origin[k][2]);
-            NAMED(V) c[3], a[9];
-            for (auto& v : c) v = NAMED(V){};
-            for (auto& v : a) v = NAMED(V){};
+                places(x, view.place + first * lanes + half + k * BLOCK, origin[k][0], origin[k][1], origin[k][2]);
+            // Twelve sums by name: as arrays they would be kept in memory.
+            NAMED(V) cx = {}, cy = {}, cz = {};
+            NAMED(V) axx = {}, axy = {}, axz = {}, ayx = {}, ayy = {}, ayz = {}, azx = {}, azy = {}, azz = {};
             for (std::size_t slot = first; slot < last; ++slot) {
-                const std::int32_t* particle = view.particle + slot * lanes + half;
+                const std::int32_t* place = view.place + slot * lanes + half;
+                // The first places are the origin: a compiler that knows would load every slot's a round ahead.
+                __asm__("" : "+r"(place));
                 const REAL* member = view.member + slot * 4 * lanes + half;
-                NAMED(V) d[3], moment[3], weight;
+                NAMED(V) dx, dy, dz, m;
                 Block now[blocks][3];
                 for (std::size_t k = 0; k < blocks; ++k) {
-                    places(x, particle + k * BLOCK, now[k][0], now[k][1], now[k][2]);
+                    places(x, place + k * BLOCK, now[k][0], now[k][1], now[k][2]);
                     for (std::size_t axis = 0; axis < 3; ++axis) now[k][axis] -= origin[k][axis];
                 }
                 // Differences are taken in double, then rounded: a float could not tell places at 500 mm well enough apart.
-                for (std::size_t axis = 0; axis < 3; ++axis) NAMED(join)(now, axis, d[axis]);
-                for (std::size_t k = 0; k < 3; ++k) NAMED(load)(member + k * lanes, moment[k]);
-                NAMED(load)(member + 3 * lanes, weight);
-                for (std::size_t k = 0; k < 3; ++k) {
-                    c[k] += weight * d[k];
-                    for (std::size_t j = 0; j < 3; ++j) a[3 * k + j] += d[k] * moment[j];
-                }
+                NAMED(join)(now, 0, dx);
+                NAMED(join)(now, 1, dy);
+                NAMED(join)(now, 2, dz);
+                // Number by number of the member: so it is loaded once and then forgotten.
+                NAMED(load)(member + 3 * lanes, m);
+                cx += m * dx;
+                cy += m * dy;
+                cz += m * dz;
+                NAMED(load)(member, m);
+                axx += dx * m;
+                ayx += dy * m;
+                azx += dz * m;
+                NAMED(load)(member + lanes, m);
+                axy += dx * m;
+                ayy += dy * m;
+                azy += dz * m;
+                NAMED(load)(member + 2 * lanes, m);
+                axz += dx * m;
+                ayz += dy * m;
+                azz += dz * m;
             }
+            const NAMED(V) c[3] = {cx, cy, cz}, a[9] = {axx, axy, axz, ayx, ayy, ayz, azx, azy, azz};
             NAMED(V) q[4], r[9];
             double* turn = rotation + g * 4 * lanes + half;
             for (std::size_t k = 0; k < 4; ++k)
@@ -146,9 +162,9 @@ TARGET static void NAMED(fit)(const void* groups, const double* x, double* rotat
                 for (std::size_t k = 0; k < 3; ++k) {
                     const double r0 = r[3 * k][l], r1 = r[3 * k + 1][l], r2 = r[3 * k + 2][l];
                     out[k] = r0;
-                    out[3 + k] = r1;
-                    out[6 + k] = r2;
-                    out[9 + k] = (origin[l / BLOCK][k][l % BLOCK] + static_cast<double>(c[k][l])) -
+                    out[4 + k] = r1;
+                    out[8 + k] = r2;
+                    out[4 * k + 3] = (origin[l / BLOCK][k][l % BLOCK] + static_cast<double>(c[k][l])) -
                                  (r0 * rest[0] + r1 * rest[lanes] + r2 * rest[2 * lanes]);
                 }
             }

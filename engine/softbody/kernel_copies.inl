@@ -4,11 +4,11 @@ using Block = double __attribute__((vector_size(BLOCK * sizeof(double))));
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 
 // Places of BLOCK particles, one a lane.  x and y of a particle come in one load.
-TARGET static inline void places(const double* from, const std::int32_t* particle, Block& x, Block& y, Block& z) {
+TARGET static inline void places(const double* from, const std::int32_t* place, Block& x, Block& y, Block& z) {
     const double* p[BLOCK];
     Pair xy[BLOCK];
     for (int l = 0; l < BLOCK; ++l) {
-        p[l] = from + 3 * static_cast<std::ptrdiff_t>(particle[l]);
+        p[l] = from + place[l];
         __builtin_memcpy(&xy[l], p[l], sizeof(Pair));
     }
 #if BLOCK == 2

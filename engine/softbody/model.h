@@ -60,14 +60,21 @@ struct WallParameters {
 template <class Real>
 struct ClusterGroups {
     std::vector<std::int32_t> first_slot;  ///< (groups + 1) in slots
-    AlignedVector<std::int32_t> particle;  ///< (slots x 8)
+    AlignedVector<std::int32_t> place;     ///< (slots x 8) index of a particle's x among the coordinates
     AlignedVector<Real> member;  ///< (slots x 4 x 8): w (X - X_c) in x, y, z [kg mm] over cluster weight, w over it
     std::vector<double> rest_centroid;  ///< (groups x 3 x 8) mm
 
     std::size_t groups() const { return first_slot.empty() ? 0 : first_slot.size() - 1; }
-    kernel::Groups<Real> view() const {
-        return {first_slot.data(), particle.data(), member.data(), rest_centroid.data()};
-    }
+    kernel::Groups<Real> view() const { return {first_slot.data(), place.data(), member.data(), rest_centroid.data()}; }
+};
+
+/// Whose transforms make a particle's goal: from[first[i] .. first[i + 1]), a multiple of four of them.
+struct GoalSources {
+    std::vector<std::int32_t> first;  ///< (n + 1)
+    std::vector<std::int32_t> from;   ///< in bytes; an empty lane's, which is zero, fills up the four
+    std::vector<double> share;        ///< (n) one over the number of clusters
+
+    kernel::Goals view() const { return {first.data(), from.data(), share.data()}; }
 };
 
 /// A part of the wall that no fixed particle holds and no cluster ties to another: it keeps its momentum exactly.
@@ -90,6 +97,7 @@ struct SoftBodyModel {
 
     std::vector<Index> cluster_start;  ///< (n + 1) the clusters of particle i: cluster[cluster_start[i] .. [i+1])
     std::vector<Index> cluster;        ///< lane index = 8 group + lane, ascending for each particle
+    GoalSources goals;                 ///< the same for the loop that adds up transforms
     std::size_t cluster_count = 0;     ///< true ones; lanes above them in the last group are empty
     Precision precision = Precision::double_;
     ClusterGroups<double> clusters;       ///< filled where precision is double_
@@ -98,6 +106,8 @@ struct SoftBodyModel {
 
     std::size_t size() const { return rest.size(); }
     std::size_t membership_count() const { return cluster.size(); }
+    /// Of a lane that belongs to no cluster.
+    std::size_t empty_lane() const { return group_count() * kernel::lanes; }
     std::size_t group_count() const { return (cluster_count + kernel::lanes - 1) / kernel::lanes; }
 };
 

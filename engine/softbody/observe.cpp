@@ -20,8 +20,9 @@ double elastic_energy(const SoftBodyModel& model, const SoftBodyState& state, co
         for (std::size_t m = begin; m < end; ++m) {
             const double* t =
                 scratch.transform.data() + static_cast<std::size_t>(model.cluster[m]) * kernel::transform_doubles;
-            const Eigen::Map<const Mat3> rotation(t);
-            squares += (state.x[i] - rotation * model.rest[i] - Eigen::Map<const Vec3>(t + 9)).squaredNorm();
+            const Eigen::Map<const Mat3, 0, Eigen::OuterStride<4>> rotation(t);
+            const Eigen::Map<const Vec3, 0, Eigen::InnerStride<4>> translation(t + 3);
+            squares += (state.x[i] - rotation * model.rest[i] - translation).squaredNorm();
         }
         sum += 0.5 * scale * model.stiffness[i] * squares / static_cast<double>(end - begin);
     }

@@ -43,12 +43,12 @@ public:
         (wide_ ? set.fit_double : set.fit_float)(wide_ ? static_cast<const void*>(&double_) : &float_, numbers(state.x),
                                                  state.rotation.data(), scratch.transform.data(), begin, end);
     }
-    /// Particles of a group, with repeats.
-    std::span<const std::int32_t> members(std::size_t group) const {
+    /// Places of a group's particles, with repeats.
+    std::span<const std::int32_t> places(std::size_t group) const {
         const std::int32_t* slot = wide_ ? double_.first_slot : float_.first_slot;
-        const std::int32_t* particle = wide_ ? double_.particle : float_.particle;
+        const std::int32_t* place = wide_ ? double_.place : float_.place;
         const auto first = static_cast<std::size_t>(slot[group]), last = static_cast<std::size_t>(slot[group + 1]);
-        return {particle + first * kernel::lanes, (last - first) * kernel::lanes};
+        return {place + first * kernel::lanes, (last - first) * kernel::lanes};
     }
 
 private:
@@ -59,7 +59,8 @@ private:
 
 void fit_all(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
     const kernel::Set& set = kernel::best();
-    scratch.transform.resize(model.group_count() * kernel::lanes * kernel::transform_doubles);
+    scratch.transform.resize((model.empty_lane() + 1) * kernel::transform_doubles);
+    std::fill_n(scratch.transform.end() - kernel::transform_doubles, kernel::transform_doubles, 0.0);
     scratch.goal.resize(model.size());
     const Clusters clusters(model);
     workers.for_ranges(model.group_count(), group_grain,
@@ -69,8 +70,7 @@ void fit_all(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& 
 /// Goals of particles [begin, end) from the clusters as they are fitted.
 void gather(const SoftBodyModel& model, SoftBodyScratch& scratch, const kernel::Set& set, std::size_t begin,
             std::size_t end) {
-    set.gather(model.cluster_start.data(), model.cluster.data(), scratch.transform.data(), numbers(model.rest),
-               scratch.goal.front().data(), begin, end);
+    set.gather(model.goals.view(), scratch.transform.data(), numbers(model.rest), numbers(scratch.goal), begin, end);
 }
 
 kernel::Particles particles(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h) {
@@ -286,10 +286,10 @@ WallPart part_around(const SoftBodyModel& model, std::span<const Index> touched)
         const std::uint8_t* const mine = lane.data() + g * kernel::lanes;
         if (std::all_of(mine, mine + kernel::lanes, [](std::uint8_t m) { return m == 0; })) continue;
         part.groups.push_back(static_cast<Index>(g));
-        const std::span<const std::int32_t> members = clusters.members(g);
+        const std::span<const std::int32_t> places = clusters.places(g);
         for (std::size_t l = 0; l < kernel::lanes; ++l) {
             if (!mine[l]) continue;
-            for (std::size_t k = l; k < members.size(); k += kernel::lanes) particle[at(members[k])] = 1;
+            for (std::size_t k = l; k < places.size(); k += kernel::lanes) particle[at(places[k] / 3)] = 1;
         }
     }
     part.runs = runs_of(particle);

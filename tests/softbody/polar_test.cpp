@@ -158,8 +158,8 @@ void compare_sets(Precision precision) {
         else
             set.fit_float(&view_float, x, rotation.data(), transform.data(), 0, wall.model.group_count());
         goal.resize(3 * wall.model.size());
-        set.gather(wall.model.cluster_start.data(), wall.model.cluster.data(), transform.data(),
-                   wall.model.rest.front().data(), goal.data(), 0, wall.model.size());
+        set.gather(wall.model.goals.view(), transform.data(), wall.model.rest.front().data(), goal.data(), 0,
+                   wall.model.size());
     };
     std::vector<double> one, two;
     run(kernel::baseline(), one);
