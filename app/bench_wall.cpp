@@ -81,10 +81,10 @@ double pass_bytes(const SoftBodyModel& model) {
     const auto particles = static_cast<double>(model.size());
     // Fit: particle and four floats of a membership; x; rotation in and out, centroid at rest, transform of a cluster.
     const double fit = memberships * (4.0 + 16.0) + particles * 24.0 + clusters * (2.0 * 32.0 + 24.0 + 96.0);
-    // Gather: cluster of a membership; transforms; where a particle's clusters begin, its rest place, its goal.
-    const double gather = memberships * 4.0 + clusters * 96.0 + particles * (4.0 + 24.0 + 24.0);
-    // Apply: x in and out, start, x~, force; mass, stiffness, compliance, fixed.  (The goal is still at hand.)
-    const double apply = particles * (2.0 * 24.0 + 3.0 * 24.0 + 3.0 * 8.0 + 1.0);
+    // Gather: transform of a membership; transforms; where a particle's begin, their share, its rest place, its goal.
+    const double gather = memberships * 4.0 + clusters * 96.0 + particles * (4.0 + 8.0 + 24.0 + 24.0);
+    // Apply: x out, start, x~, force; mass, stiffness, compliance, fixed.  (The goal is still at hand.)
+    const double apply = particles * (24.0 + 3.0 * 24.0 + 3.0 * 8.0 + 1.0);
     return fit + gather + apply;
 }
 
