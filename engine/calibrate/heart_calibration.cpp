@@ -43,8 +43,7 @@ double as_written(double value) {
 Profile place_knots(const BeatMotion& target, int count) {
     constexpr int grid = 200;
     const auto at = [&](int i) { return static_cast<double>(i) / grid; };
-    std::vector<int> places;
-    for (int k = 0; k < 4; ++k) places.push_back(k * grid / 4);
+    std::vector<int> places{0, grid / 4, grid / 2, 3 * grid / 4};
     const auto profile_at = [&](const std::vector<int>& chosen) {
         Profile profile;
         for (const int i : chosen) profile.push_back({at(i), as_written(at_phase(target, at(i)))});

@@ -82,9 +82,10 @@ std::vector<double> strain_or_nan(const StressStrain& reference, const WallSearc
 
 }  // namespace
 
-std::vector<Bound> default_wall_bounds() {
+std::vector<Bound> default_wall_bounds(RigStress stress) {
+    const bool pushed_hard = stress == RigStress::paper;
     return {named_bound("wall.cluster_spacing_mm", 4.0, 14.0), named_bound("wall.cluster_radius_mm", 6.0, 24.0),
-            named_bound("wall.cluster_stiffness", 0.3, 0.97)};
+            named_bound("wall.cluster_stiffness", pushed_hard ? 0.8 : 0.3, pushed_hard ? 0.999 : 0.97)};
 }
 
 std::vector<std::string> wall_paths() {
@@ -116,7 +117,7 @@ WallCalibration calibrate_wall(const StressStrain& reference, const WallSearch& 
     check(reference);
     check_pushes(reference);
     WallSearch search = wanted;
-    if (search.free.empty()) search.free = default_wall_bounds();
+    if (search.free.empty()) search.free = default_wall_bounds(search.rig.stress);
     check_free(search.free);
     const auto scene_at = [&](std::span<const double> x) {
         SceneSpec scene = search.scene;

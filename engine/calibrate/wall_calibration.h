@@ -37,8 +37,9 @@ struct WallCalibration {
     std::string overlay;  ///< TOML to lay over a scene
 };
 
-/// s_c 4 to 14 mm, r_c 6 to 24 mm, t_c 0.3 to 0.97: round the best values of [li2025] (8 mm, 12 mm, 0.8).
-std::vector<Bound> default_wall_bounds();
+/// s_c 4 to 14 mm, r_c 6 to 24 mm, t_c 0.3 to 0.97: round the best values of [li2025] (8 mm, 12 mm, 0.8).  Under the
+/// paper's traction, which stresses the wall r0 / t0 times as much, t_c 0.8 to 0.999.
+std::vector<Bound> default_wall_bounds(RigStress stress);
 
 /// Paths that change a tube under load: numbers of [wall] and of the effects that act on a wall by itself.
 std::vector<std::string> wall_paths();
