@@ -40,6 +40,21 @@ std::size_t files_in(const std::string& folder) {
     return n;
 }
 
+TEST(Calibrate, ContactsWantOneDataSetOfTheirKindAndNoReference) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(call("calibrate wall").code, 2);
+    EXPECT_EQ(call("calibrate wall " + curve(folder) + " --contact " + folder.path("")).code, 2);
+    const Outcome missing = call("calibrate wall --contact " + folder.path("nowhere"));
+    EXPECT_EQ(missing.code, 1);
+    EXPECT_NE(missing.text.find("is no folder"), std::string::npos) << missing.text;
+    const std::string fem = std::string(CATHLAB_SHARED_DATA) + "/fem/tube";
+    if (!std::filesystem::exists(fem)) GTEST_SKIP() << "the shared data are not here: " << fem;
+    const std::string tension = std::string(CATHLAB_SHARED_DATA) + "/measured/silicone-ef30-0t";
+    const Outcome other = call("calibrate wall --contact " + tension);
+    EXPECT_EQ(other.code, 1);
+    EXPECT_NE(other.text.find("wall-contact"), std::string::npos) << other.text;
+}
+
 TEST(Calibrate, TheWallLeavesAnOverlayThatASceneTakesAndAReport) {
     const TemporaryFolder folder;
     const std::string report = folder.path("new/report");
