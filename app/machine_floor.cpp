@@ -28,6 +28,7 @@ struct Constants {
 };
 
 // The sums alternate their sign, so that they stay in range too.
+// NOLINTBEGIN(bugprone-macro-parentheses): types and attributes
 #define CATHLAB_LOOPS(SET, TARGET, BYTES, REAL)                                                 \
     TARGET void pairs_##SET##_##REAL(std::size_t rounds, const Constants& with, double* out) {  \
         using V = REAL __attribute__((vector_size(BYTES)));                                     \
@@ -60,6 +61,7 @@ CATHLAB_LOOPS(wide, , 16, float)
 CATHLAB_LOOPS(wide, , 16, double)
 #endif
 #undef CATHLAB_LOOPS
+// NOLINTEND(bugprone-macro-parentheses)
 
 // Seen from outside, so that no loop can be left out.
 volatile double nobody_knows = 1.0;

@@ -7,9 +7,9 @@
         __builtin_memcpy(&in_x, column, sizeof in_x);                              \
         __builtin_memcpy(&in_y, column + sizeof in_x, sizeof in_y);                \
         __builtin_memcpy(&in_z, column + 2 * sizeof in_x, sizeof in_z);            \
-        x += in_x;                                                                 \
-        y += in_y;                                                                 \
-        z += in_z;                                                                 \
+        (x) += in_x;                                                               \
+        (y) += in_y;                                                               \
+        (z) += in_z;                                                               \
     }
 TARGET static void GATHER(const Goals& goals, const double* transform, const double* rest, double* goal,
                           std::size_t begin, std::size_t end) {

@@ -19,7 +19,7 @@ BLOCK_INLINE void places_of(const double* from, std::size_t i, std::size_t count
     if (count == BLOCK) {
         __builtin_memcpy(&to.a, at, sizeof to.a);
         __builtin_memcpy(&to.b, at + BLOCK, sizeof to.b);
-        __builtin_memcpy(&to.c, at + 2 * BLOCK, sizeof to.c);
+        __builtin_memcpy(&to.c, at + std::size_t{2} * BLOCK, sizeof to.c);
     } else {
         to.a = to.b = to.c = Block{};
         __builtin_memcpy(&to, at, 3 * count * sizeof(double));
@@ -30,21 +30,21 @@ BLOCK_INLINE void put(const Places& from, double* to, std::size_t i, std::size_t
     if (count == BLOCK) {
         __builtin_memcpy(at, &from.a, sizeof from.a);
         __builtin_memcpy(at + BLOCK, &from.b, sizeof from.b);
-        __builtin_memcpy(at + 2 * BLOCK, &from.c, sizeof from.c);
+        __builtin_memcpy(at + std::size_t{2} * BLOCK, &from.c, sizeof from.c);
     } else {
         __builtin_memcpy(at, &from, 3 * count * sizeof(double));
     }
 }
 #if BLOCK == 2
-#define SPREAD(s, to)                             \
-    to.a = __builtin_shufflevector(s, s, 0, 0),   \
-    to.b = s,                                     \
-    to.c = __builtin_shufflevector(s, s, 1, 1)
+#define SPREAD(s, to)                               \
+    (to).a = __builtin_shufflevector(s, s, 0, 0),   \
+    (to).b = (s),                                   \
+    (to).c = __builtin_shufflevector(s, s, 1, 1)
 #else
-#define SPREAD(s, to)                                    \
-    to.a = __builtin_shufflevector(s, s, 0, 0, 0, 1),    \
-    to.b = __builtin_shufflevector(s, s, 1, 1, 2, 2),    \
-    to.c = __builtin_shufflevector(s, s, 2, 3, 3, 3)
+#define SPREAD(s, to)                                      \
+    (to).a = __builtin_shufflevector(s, s, 0, 0, 0, 1),    \
+    (to).b = __builtin_shufflevector(s, s, 1, 1, 2, 2),    \
+    (to).c = __builtin_shufflevector(s, s, 2, 3, 3, 3)
 #endif
 
 struct Fixed {
