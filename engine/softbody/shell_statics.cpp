@@ -33,8 +33,8 @@ bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fi
                        std::vector<Vec3>& x, const ShellRest& rest) {
     const std::size_t n = model.particles;
     CATHLAB_CHECK(fixed.size() == n && x.size() == n, "one place and one mark a particle");
-    std::vector<Index> place(n, -1);  // of a free particle among the unknowns
-    Index free = 0;
+    std::vector<Eigen::Index> place(n, -1);  // of a free particle among the unknowns
+    Eigen::Index free = 0;
     for (std::size_t i = 0; i < n; ++i)
         if (!fixed[i]) place[i] = free++;
     const auto unknown = [&](Eigen::Index row) { return place[static_cast<std::size_t>(row / 3)]; };
@@ -80,7 +80,7 @@ bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fi
             for (const Eigen::Triplet<double>& t : load_stiffness)
                 if (t.row() >= t.col()) add(t.row(), t.col(), t.value());
             // A little of the diagonal keeps a slack membrane's matrix definite; it changes the way, not the end.
-            for (Index i = 0; i < 3 * free; ++i)
+            for (Eigen::Index i = 0; i < 3 * free; ++i)
                 entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1e-9 * diagonal);
             k.setFromTriplets(entries.begin(), entries.end());
             const std::span<const int> rows(k.innerIndexPtr(), static_cast<std::size_t>(k.nonZeros()));
@@ -94,7 +94,7 @@ bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fi
         before = largest;
         const Eigen::VectorXd step = solver.solve(residual);
         double far = 0.0;
-        for (Index i = 0; i < free; ++i) far = std::max(far, step.segment<3>(3 * i).norm());
+        for (Eigen::Index i = 0; i < free; ++i) far = std::max(far, step.segment<3>(3 * i).norm());
         double share = std::min(1.0, largest_move_mm / std::max(far, 1e-300));
         const double slope = residual.dot(step);
         const double rounding = 1e-12 * std::fabs(energy);
