@@ -51,7 +51,7 @@ public:
     void report() {
         if (!options_.on_generation) return;
         const SearchProgress progress{result_.generations, options_.generations, result_.evaluations, result_.value,
-                                result_.best};
+                                      result_.best};
         if (!options_.on_generation(progress)) {
             result_.stopped = true;
             throw Stop{};
