@@ -1,11 +1,10 @@
 #include "calibrate_output.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 
+#include "core/csv.h"
 #include "core/errors.h"
 #include "record/run_files.h"
 
@@ -36,11 +35,6 @@ std::string one_line(std::string text) {
     std::replace_if(
         text.begin(), text.end(), [](char c) { return c >= '\0' && c < ' '; }, ' ');
     return text;
-}
-
-bool parse_number(std::string_view text, double& out) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-    return error == std::errc() && end == text.data() + text.size() && std::isfinite(out);
 }
 
 }  // namespace
@@ -96,12 +90,12 @@ std::string table_text(const PageTable& table) {
 
 std::pair<double, double> parse_range(const std::string& option, const std::string& text) {
     const auto colon = text.find(':');
-    double low = 0.0, high = 0.0;
-    const bool parsed = colon != std::string::npos && parse_number(std::string_view(text).substr(0, colon), low) &&
-                        parse_number(std::string_view(text).substr(colon + 1), high);
-    if (!parsed) throw UserError(option + " '" + text + "': two numbers LOW:HIGH are wanted", true);
-    if (low >= high) throw UserError(option + " '" + text + "': the range is turned round or empty", true);
-    return {low, high};
+    const bool two = colon != std::string::npos;
+    const auto low = finite_number(std::string_view(text).substr(0, colon));
+    const auto high = two ? finite_number(std::string_view(text).substr(colon + 1)) : std::nullopt;
+    if (!low || !high) throw UserError(option + " '" + text + "': two numbers LOW:HIGH are wanted", true);
+    if (*low >= *high) throw UserError(option + " '" + text + "': the range is turned round or empty", true);
+    return {*low, *high};
 }
 
 FreeRange parse_free(const std::string& text) {

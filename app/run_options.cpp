@@ -1,19 +1,11 @@
 #include "run_options.h"
 
-#include <charconv>
 #include <cmath>
 
+#include "core/csv.h"
 #include "core/errors.h"
 
 namespace cathlab {
-namespace {
-
-bool parse_int(std::string_view text, int& out) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-    return error == std::errc() && end == text.data() + text.size();
-}
-
-}  // namespace
 
 void require_finite(const char* option, double value) {
     if (!std::isfinite(value)) throw UserError(std::string(option) + ": a finite number is wanted", true);
@@ -24,10 +16,13 @@ FilmOptions film_options(const FilmArguments& arguments, const SceneSpec& scene,
     if (!arguments.size.empty()) {
         const std::string_view size(arguments.size);
         const auto cross = size.find('x');
-        const bool parsed = cross != std::string_view::npos && parse_int(size.substr(0, cross), out.width) &&
-                            parse_int(size.substr(cross + 1), out.height);
-        if (!parsed || out.width < 64 || out.height < 64 || out.width > 7680 || out.height > 4320 ||
-            out.width % 2 != 0 || out.height % 2 != 0)
+        const bool two = cross != std::string_view::npos;
+        const auto width = parse_number<int>(size.substr(0, cross));
+        const auto height = two ? parse_number<int>(size.substr(cross + 1)) : std::nullopt;
+        out.width = width.value_or(0);
+        out.height = height.value_or(0);
+        if (out.width < 64 || out.height < 64 || out.width > 7680 || out.height > 4320 || out.width % 2 != 0 ||
+            out.height % 2 != 0)
             throw UserError("--size '" + arguments.size + "': two even numbers are wanted, 64x64 to 7680x4320", true);
     }
     require_finite("--fps", arguments.fps);

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string_view>
 
+#include "core/csv.h"
 #include "scene/toml_document.h"
 
 namespace cathlab {
@@ -32,31 +32,6 @@ struct Quantity {
     }
 };
 
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
-    return text;
-}
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-    std::vector<std::string_view> out;
-    for (;;) {
-        const auto comma = line.find(',');
-        out.push_back(trimmed(line.substr(0, comma)));
-        if (comma == std::string_view::npos) return out;
-        line.remove_prefix(comma + 1);
-    }
-}
-
-// A cell as a sentence may show it: not a whole file, and nothing that a terminal would obey.
-std::string shown(std::string_view cell) {
-    constexpr std::size_t longest = 60;
-    std::string out(cell.substr(0, longest));
-    std::replace_if(
-        out.begin(), out.end(), [](char c) { return c >= '\0' && c < ' '; }, '?');
-    return out;
-}
-
 std::string number_text(double value) {
     char buffer[64];
     return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
@@ -71,19 +46,11 @@ struct Row {
 class Table {
 public:
     explicit Table(const std::string& path) : file_(path), text_(read_text_file(path, most_bytes)) {
-        std::string_view rest(text_);
-        if (rest.substr(0, 3) == "\xEF\xBB\xBF") rest.remove_prefix(3);
-        int line = 0;
-        while (!rest.empty()) {
-            ++line;
-            const auto end = rest.find('\n');
-            const std::string_view content = trimmed(rest.substr(0, end));
-            rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-            if (content.empty() || content.front() == '#') continue;
+        for (CsvLines lines(text_); lines.next();) {
             if (header_.cells.empty())
-                read_header({line, cells_of(content)});
+                read_header({lines.number(), lines.cells()});
             else
-                add_row({line, cells_of(content)});
+                add_row({lines.number(), lines.cells()});
         }
         if (header_.cells.empty())
             throw UserError({file_, 0, ""}, "is empty; a line with the columns' names is wanted first");
@@ -123,15 +90,12 @@ public:
 
     double number(const Row& row, std::size_t column) const {
         const std::string_view cell = row.cells[column];
-        std::string_view digits = cell;
-        if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
-        double value = 0.0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-        if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
+        const auto value = finite_number(cell);
+        if (!value)
             throw UserError({file_, row.line, std::string(header_.cells[column])},
                             cell.empty() ? "is empty; a finite number is wanted"
                                          : "found '" + shown(cell) + "'; a finite number is wanted");
-        return value;
+        return *value;
     }
 
     /// No column of these names: tells a missing or unknown unit from a missing column.

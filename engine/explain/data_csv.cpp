@@ -1,13 +1,13 @@
 #include "explain/data_csv.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <string_view>
 
 #include "core/check.h"
+#include "core/csv.h"
 #include "core/errors.h"
 #include "explain/dataset_kinds.h"
 #include "scene/toml_document.h"
@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::uint64_t largest_file = 512ULL << 20U;
 constexpr std::size_t fewest_rows = 8;
+constexpr std::size_t most_columns = 1000;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct Suffix {
@@ -29,45 +30,11 @@ constexpr Suffix suffixes[] = {
     {"_ms", "s", 1e-3},   {"_s", "s", 1.0},        {"_mn", "mN", 1.0},   {"_n", "mN", 1000.0},
     {"_kpa", "kPa", 1.0}, {"_mpa", "kPa", 1000.0}, {"_au", "au", 1.0}};
 
-std::vector<std::string_view> split_line(std::string_view line) {
-    std::vector<std::string_view> out;
-    while (true) {
-        const auto comma = line.find(',');
-        std::string_view cell = line.substr(0, comma);
-        while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
-        while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t' || cell.back() == '\r'))
-            cell.remove_suffix(1);
-        out.push_back(cell);
-        if (comma == std::string_view::npos) return out;
-        line.remove_prefix(comma + 1);
-    }
-}
-
-/// nullopt-like: false where the cell is no finite number.  An empty cell is NaN.
-bool parse_number(std::string_view cell, double& out) {
-    if (cell.empty()) {
-        out = nan;
-        return true;
-    }
-    if (cell.front() == '+') cell.remove_prefix(1);
-    const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), out);
-    return fault == std::errc() && end == cell.data() + cell.size() && std::isfinite(out);
-}
-
 /// The text of a file by rows, with the place for every complaint.
 class Table {
 public:
     explicit Table(const std::string& path) : path_(path), text_(read_text_file(path, largest_file)) {
-        std::string_view rest = text_;
-        int line_number = 0;
-        while (!rest.empty()) {
-            const auto end = rest.find('\n');
-            const std::string_view line = rest.substr(0, end);
-            ++line_number;
-            if (line.find_first_not_of(" \t\r") != std::string_view::npos) add(line, line_number);
-            if (end == std::string_view::npos) break;
-            rest.remove_prefix(end + 1);
-        }
+        for (CsvLines lines(text_); lines.next();) add(lines.cells(), lines.number());
         if (header.empty()) throw UserError({path, 0, ""}, "is empty; a header and rows are wanted");
         if (rows() < fewest_rows)
             throw UserError({path, 0, ""}, "has " + std::to_string(rows()) + " rows; at least " +
@@ -81,28 +48,37 @@ public:
     bool has(const std::string& name) const { return find(name) < header.size(); }
     std::string_view cell(std::size_t row, std::size_t column) const { return cells_[row * header.size() + column]; }
 
+    /// NaN for an empty cell.
     double number(std::size_t row, std::size_t column) const {
-        double value = nan;
-        if (!parse_number(cell(row, column), value))
-            refuse(row, column,
-                   "found '" + std::string(cell(row, column)) + "'; a finite number or an empty cell is wanted");
-        return value;
+        const std::string_view text = cell(row, column);
+        if (text.empty()) return nan;
+        const auto value = finite_number(text);
+        if (!value) refuse(row, column, "found '" + shown(text) + "'; a finite number or an empty cell is wanted");
+        return *value;
     }
     [[noreturn]] void refuse(std::size_t row, std::size_t column, const std::string& sentence) const {
-        throw UserError({path_, lines_[row], "column " + header[column]}, sentence);
+        throw UserError({path_, lines_[row], "column " + shown(header[column])}, sentence);
     }
-    [[noreturn]] void refuse_header(const std::string& sentence) const { throw UserError({path_, 1, ""}, sentence); }
+    [[noreturn]] void refuse_header(const std::string& sentence) const {
+        throw UserError({path_, header_line_, ""}, sentence);
+    }
+    std::vector<std::string> names_shown() const {
+        std::vector<std::string> names;
+        for (const std::string& name : header) names.push_back(shown(name));
+        return names;
+    }
 
     std::vector<std::string> header;
 
 private:
-    void add(std::string_view line, int number) {
-        const auto cells = split_line(line);
+    void add(const std::vector<std::string_view>& cells, int number) {
         if (header.empty()) {
+            header_line_ = number;
+            if (cells.size() > most_columns)
+                throw UserError({path_, number, ""}, "names more than " + std::to_string(most_columns) + " columns");
             for (const std::string_view cell : cells) {
                 if (cell.empty()) throw UserError({path_, number, ""}, "a column has no name");
-                if (has(std::string(cell)))
-                    throw UserError({path_, number, std::string(cell)}, "stands twice in the header");
+                if (has(std::string(cell))) throw UserError({path_, number, shown(cell)}, "stands twice in the header");
                 header.emplace_back(cell);
             }
             return;
@@ -117,6 +93,7 @@ private:
     std::string path_, text_;
     std::vector<std::string_view> cells_;  // into text_
     std::vector<int> lines_;
+    int header_line_ = 1;
 };
 
 void read_runs_and_time(const Table& table, Dataset& out) {
@@ -153,7 +130,7 @@ void read_part(const Table& table, Dataset& out) {
     for (std::size_t row = 0; row < table.rows(); ++row) {
         const std::string_view word = table.cell(row, column);
         if (word != "train" && word != "val")
-            table.refuse(row, column, "found '" + std::string(word) + "'; train or val is wanted");
+            table.refuse(row, column, "found '" + shown(word) + "'; train or val is wanted");
         out.held_out.push_back(word == "val" ? 1 : 0);
         held_out += word == "val" ? 1 : 0;
     }
@@ -184,12 +161,11 @@ void read_columns(const Table& table, Dataset& out) {
         const std::string& name = table.header[c];
         if (name == "run" || name == "t_s" || name == "part") continue;
         DataColumn column = describe(name);
-        double value = nan;
         bool any_number = false;
         bool any_text = false;
         for (std::size_t row = 0; row < table.rows(); ++row) {
-            if (table.cell(row, c).empty()) continue;
-            (parse_number(table.cell(row, c), value) ? any_number : any_text) = true;
+            const std::string_view cell = table.cell(row, c);
+            if (!cell.empty()) (finite_number(cell) ? any_number : any_text) = true;
         }
         if (any_text && !any_number && column.unit.empty()) {
             LabelColumn label{name, {}};
@@ -211,14 +187,14 @@ void give_roles(const Table& table, Dataset& out) {
             if (column.quantity == known.quantity && column.unit == known.unit) return &column;
         return nullptr;
     };
-    const auto shown = [](const KnownColumn& known) {
+    const auto sentence = [](const KnownColumn& known) {
         return "'" + known.quantity + "'" + (known.unit.empty() ? "" : " in " + known.unit + " or a unit like it");
     };
     for (const KnownColumn& known : kind->inputs) {
         DataColumn* column = find(known);
         if (column == nullptr)
-            table.refuse_header("kind " + out.kind + " needs the column " + shown(known) + "; found " +
-                                comma_list(table.header) + did_you_mean(known.quantity, table.header));
+            table.refuse_header("kind " + out.kind + " needs the column " + sentence(known) + "; found " +
+                                comma_list(table.names_shown()) + did_you_mean(known.quantity, table.names_shown()));
         column->role = ColumnRole::input;
     }
     const auto whole = [&](const std::vector<KnownColumn>& set) {
@@ -230,10 +206,10 @@ void give_roles(const Table& table, Dataset& out) {
         for (const auto& choice : kind->measured) {
             wanted += wanted.empty() ? "" : ", or ";
             for (const KnownColumn& known : choice)
-                wanted += (known.quantity == choice[0].quantity ? "" : ", ") + shown(known);
+                wanted += (known.quantity == choice[0].quantity ? "" : ", ") + sentence(known);
         }
         table.refuse_header("kind " + out.kind + " needs the measured columns " + wanted + "; found " +
-                            comma_list(table.header));
+                            comma_list(table.names_shown()));
     }
     for (const KnownColumn& known : *set) find(known)->role = ColumnRole::measured;
     for (const KnownColumn& known : kind->optional_measured)

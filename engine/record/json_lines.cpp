@@ -16,7 +16,7 @@ nlohmann::json parse_json(const std::string& text, const SourcePlace& where) {
     return out;
 }
 
-std::optional<std::uint64_t> parse_hash(const std::string& text) {
+std::optional<std::uint64_t> parse_hash(std::string_view text) {
     if (text.size() != 16) return std::nullopt;
     std::uint64_t out = 0;
     for (const char c : text) {

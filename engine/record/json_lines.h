@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -19,7 +20,7 @@ namespace cathlab {
 nlohmann::json parse_json(const std::string& text, const SourcePlace& where);
 
 /// Sixteen hexadecimal digits -> the hash, or nothing.
-std::optional<std::uint64_t> parse_hash(const std::string& text);
+std::optional<std::uint64_t> parse_hash(std::string_view text);
 
 /// The members of one object, each read once with its type; done() refuses what was not read.
 class JsonFields {

@@ -2,36 +2,19 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
 
 #include "core/check.h"
+#include "core/csv.h"
 #include "record/json_lines.h"
 #include "record/run_files.h"
 #include "scene/toml_document.h"
 
 namespace cathlab {
 namespace {
-
-std::vector<std::string> cells_of(const std::string& line) {
-    std::vector<std::string> out;
-    std::size_t begin = 0;
-    for (;;) {
-        const std::size_t comma = line.find(',', begin);
-        out.push_back(line.substr(begin, comma == std::string::npos ? std::string::npos : comma - begin));
-        if (comma == std::string::npos) return out;
-        begin = comma + 1;
-    }
-}
-
-template <class T>
-bool parse_number(const std::string& text, T& out) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-    return error == std::errc() && end == text.data() + text.size();
-}
 
 Input parse_input(const nlohmann::json& value, const SourcePlace& where) {
     JsonFields fields(value, where);
@@ -76,23 +59,24 @@ void read_hashes(RunRecord& run) {
     std::vector<std::string> names;
     for (const std::string& line : read_lines(path, run.manifest.complete)) {
         ++where.line;
-        std::vector<std::string> cells = cells_of(line);
+        const auto cells = cells_of(line);
         if (where.line == 1) {
             if (cells.size() < 2 || cells[0] != "step" || cells[1] != "whole")
                 throw UserError(where, "the header step,whole,... is wanted");
-            names = std::move(cells);
+            names.assign(cells.begin(), cells.end());
             continue;
         }
         if (cells.size() != names.size())
             throw UserError(where, "found " + std::to_string(cells.size()) + " cells, " + std::to_string(names.size()) +
                                        " are wanted");
         RecordedHash row;
-        if (!parse_number(cells[0], row.steps) || row.steps < (run.hashes.empty() ? 0 : run.hashes.back().steps + 1))
-            throw UserError(where, "found '" + cells[0] + "'; a step that rises from line to line is wanted");
+        const auto steps = parse_number<std::int64_t>(cells[0]);
+        if (!steps || *steps < (run.hashes.empty() ? 0 : run.hashes.back().steps + 1))
+            throw UserError(where, "found '" + shown(cells[0]) + "'; a step that rises from line to line is wanted");
+        row.steps = *steps;
         for (std::size_t i = 1; i < cells.size(); ++i) {
             const auto hash = parse_hash(cells[i]);
-            if (!hash)
-                throw UserError(where, "found '" + cells[i].substr(0, 40) + "'; sixteen hexadecimal digits are wanted");
+            if (!hash) throw UserError(where, "found '" + shown(cells[i]) + "'; sixteen hexadecimal digits are wanted");
             if (i == 1)
                 row.hash.whole = *hash;
             else
@@ -147,7 +131,7 @@ std::vector<Channels> read_trace(const std::string& folder, bool complete) {
     std::vector<Channels> out;
     for (const std::string& line : read_lines(path, complete)) {
         ++where.line;
-        const std::vector<std::string> cells = cells_of(line);
+        const auto cells = cells_of(line);
         if (cells.size() != channels.size() + 1)
             throw UserError(where, "found " + std::to_string(cells.size()) + " columns, " +
                                        std::to_string(channels.size() + 1) + " are wanted");
@@ -155,20 +139,22 @@ std::vector<Channels> read_trace(const std::string& folder, bool complete) {
             for (std::size_t i = 0; i < channels.size(); ++i) {
                 const std::string wanted = std::string(channels[i].name) + " [" + std::string(channels[i].unit) + "]";
                 if (cells[i + 1] != wanted)
-                    throw UserError(
-                        where, "found the column '" + cells[i + 1].substr(0, 60) + "', '" + wanted + "' is wanted");
+                    throw UserError(where,
+                                    "found the column '" + shown(cells[i + 1]) + "', '" + wanted + "' is wanted");
             }
             continue;
         }
-        std::int64_t step = 0;
-        if (!parse_number(cells[0], step) || step != static_cast<std::int64_t>(out.size()))
-            throw UserError(
-                where, "found step '" + cells[0].substr(0, 40) + "', " + std::to_string(out.size()) + " is wanted");
+        if (parse_number<std::int64_t>(cells[0]) != static_cast<std::int64_t>(out.size()))
+            throw UserError(where,
+                            "found step '" + shown(cells[0]) + "', " + std::to_string(out.size()) + " is wanted");
         Channels& row = out.emplace_back();
-        for (std::size_t i = 0; i < channels.size(); ++i)
-            if (!parse_number(cells[i + 1], row.*channels[i].value))
+        for (std::size_t i = 0; i < channels.size(); ++i) {
+            const auto value = parse_number<double>(cells[i + 1]);
+            if (!value)
                 throw UserError({path, where.line, std::string(channels[i].name)},
-                                "found '" + cells[i + 1].substr(0, 40) + "', a number is wanted");
+                                "found '" + shown(cells[i + 1]) + "', a number is wanted");
+            row.*channels[i].value = *value;
+        }
     }
     if (where.line == 0) throw UserError(where, "is empty");
     return out;

@@ -1,10 +1,9 @@
 #include "scene/script.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <string_view>
 
+#include "core/csv.h"
 #include "core/errors.h"
 #include "scene/toml_document.h"
 
@@ -14,34 +13,10 @@ namespace {
 constexpr std::uint64_t most_script_bytes = 64ULL << 20U;
 constexpr double longest_script_s = 86400.0;
 
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
-    return text;
-}
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-    std::vector<std::string_view> out;
-    for (;;) {
-        const auto comma = line.find(',');
-        out.push_back(trimmed(line.substr(0, comma)));
-        if (comma == std::string_view::npos) return out;
-        line.remove_prefix(comma + 1);
-    }
-}
-
-std::string shown(std::string_view cell) {
-    return std::string(cell.substr(0, 60));
-}
-
 double number_of(std::string_view cell, const SourcePlace& where, const std::string& wanted) {
-    std::string_view digits = cell;
-    if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
-        throw UserError(where, "found '" + shown(cell) + "'; " + wanted + " is wanted");
-    return value;
+    const auto value = finite_number(cell);
+    if (!value) throw UserError(where, "found '" + shown(cell) + "'; " + wanted + " is wanted");
+    return *value;
 }
 
 std::string number_text(double value) {
@@ -87,18 +62,13 @@ Script Script::parse(const std::string& text, const std::string& file) {
     Script out;
     SourcePlace where{file, 0, ""};
     bool header = false;
-    std::string_view rest(text);
-    if (rest.substr(0, 3) == "\xEF\xBB\xBF") rest.remove_prefix(3);
-    while (!rest.empty()) {
-        ++where.line;
-        const auto end = rest.find('\n');
-        const std::string_view line = trimmed(rest.substr(0, end));
-        rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-        if (line.empty() || line.front() == '#') continue;
-        const auto cells = cells_of(line);
+    for (CsvLines lines(text); lines.next();) {
+        where.line = lines.number();
+        const auto cells = lines.cells();
         if (!header) {
             if (cells != std::vector<std::string_view>{"t_s", "action", "value"})
-                throw UserError(where, "found '" + shown(line) + "'; the header t_s,action,value is wanted first");
+                throw UserError(where,
+                                "found '" + shown(lines.text()) + "'; the header t_s,action,value is wanted first");
             header = true;
             continue;
         }

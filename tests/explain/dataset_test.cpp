@@ -80,6 +80,25 @@ TEST(Dataset, ABadTableIsNamedByFileLineAndColumn) {
     expect_says(toml, "run,t_s,displacement_mm,part\n" + rows(8, "1.0,train"), "both train and val are wanted");
 }
 
+TEST(Dataset, ATableMayHaveCommentsAndAMarkAndIsStillCountedByItsLines) {
+    const std::string toml = heart_toml("[]"), comment = "\xEF\xBB\xBF# from the rig, 25 C\r\n";
+    const Folder folder(toml, comment + good_header + "# first run\n" + rows(8, "+1.0"));
+    EXPECT_EQ(read_dataset(folder.path()).rows(), 8U);
+    expect_says(toml, comment + good_header + rows(8, "1.0") + "0,9,0x1p3\n", "data.csv:11: column displacement_mm");
+    expect_says(toml, comment + "run,displacement_mm\n" + "0,1\n0,1\n0,1\n0,1\n0,1\n0,1\n0,1\n0,1\n",
+                "data.csv:2: the column t_s");
+}
+
+TEST(Dataset, NothingThatATerminalObeysLeavesATableInASentence) {
+    const std::string toml = heart_toml("[]");
+    expect_says(toml, good_header + rows(8, "1.0") + "0,9,\x1b[2J" + std::string(1000, 'x') + "\n", "found '?[2Jx");
+    expect_says(toml, "run,t_s,\x1b]0;x\n" + rows(8, "1.0"), "found run, t_s, ?]0;x");
+    EXPECT_LT(complaint(toml, "run,t_s," + std::string(1U << 20U, 'x') + "\n" + rows(8, "1.0")).size(), 1000U);
+    std::string many = "t_s";
+    for (int i = 0; i < 1000; ++i) many += ",c" + std::to_string(i);
+    expect_says(toml, many + "\n", "names more than 1000 columns");
+}
+
 TEST(Dataset, ABadDescriptionIsNamedByFileLineAndKey) {
     const std::string csv = good_header + rows(8, "1.0");
     std::string toml = heart_toml("[]");

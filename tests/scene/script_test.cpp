@@ -65,6 +65,7 @@ TEST(Script, EveryFaultNamesItsLine) {
               std::string::npos);
     EXPECT_NE(error_of(header + "0,advance,fast").find("found 'fast'; a number"), std::string::npos);
     EXPECT_NE(error_of(header + "0,advance,3mm").find("found '3mm'; a number"), std::string::npos);
+    EXPECT_NE(error_of(header + "0,advance,\x1b[2J").find("found '?[2J'; a number"), std::string::npos);
     EXPECT_NE(error_of(header + "0,advance,nan").find("found 'nan'"), std::string::npos);
     EXPECT_NE(error_of(header + "0,advance,inf").find("found 'inf'"), std::string::npos);
     EXPECT_NE(error_of(header + "0,advance,1e999").find("found '1e999'"), std::string::npos);
