@@ -1,5 +1,6 @@
 #include "render/gl_device.h"
 
+#include <bit>
 #include <cstdint>
 #include <utility>
 
@@ -7,6 +8,14 @@
 #include "core/errors.h"
 
 namespace cathlab {
+namespace {
+
+/// OpenGL takes offsets into the bound buffer in the shape of addresses.
+const void* buffer_offset(std::uintptr_t bytes) {
+    return std::bit_cast<const void*>(bytes);
+}
+
+}  // namespace
 
 GlDevice::GlDevice(std::unique_ptr<GlTarget> target) : target_(std::move(target)) {
     target_->make_current();
@@ -94,10 +103,9 @@ GlMesh::GlMesh(GlDevicePtr device, std::vector<int> attribute_sizes) : device_(s
     std::uintptr_t offset = 0;
     for (std::size_t i = 0; i < attribute_sizes.size(); ++i) {
         gl.EnableVertexAttribArray(static_cast<GLuint>(i));
-        gl.VertexAttribPointer(
-            static_cast<GLuint>(i), attribute_sizes[i], GL_FLOAT, GL_FALSE,
-            static_cast<GLsizei>(static_cast<std::size_t>(stride) * sizeof(float)),
-            reinterpret_cast<const void*>(offset));  // NOLINT(performance-no-int-to-ptr): GL's offsets
+        gl.VertexAttribPointer(static_cast<GLuint>(i), attribute_sizes[i], GL_FLOAT, GL_FALSE,
+                               static_cast<GLsizei>(static_cast<std::size_t>(stride) * sizeof(float)),
+                               buffer_offset(offset));
         offset += static_cast<std::uintptr_t>(attribute_sizes[i]) * sizeof(float);
     }
 }
@@ -133,8 +141,7 @@ void GlMesh::draw(std::size_t first, std::size_t count) const {
     if (count == 0) return;
     const GlTable& gl = device_->gl();
     gl.BindVertexArray(array_);
-    gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT,
-                    reinterpret_cast<const void*>(first * sizeof(GLuint)));  // NOLINT(performance-no-int-to-ptr)
+    gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT, buffer_offset(first * sizeof(GLuint)));
 }
 
 GlFramebuffer::GlFramebuffer(GlDevicePtr device, int width, int height, const std::vector<GLenum>& formats, bool depth)

@@ -14,8 +14,7 @@ struct CacheLineAllocator {
 
     CacheLineAllocator() = default;
     template <class U>
-    CacheLineAllocator(const CacheLineAllocator<U>&) {
-    }  // NOLINT(google-explicit-constructor): the standard asks for it
+    explicit CacheLineAllocator(const CacheLineAllocator<U>&) {}
     T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), line)); }
     void deallocate(T* p, std::size_t) { ::operator delete(p, line); }
     bool operator==(const CacheLineAllocator&) const { return true; }
