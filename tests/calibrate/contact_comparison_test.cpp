@@ -6,18 +6,13 @@
 #include <cmath>
 
 #include "core/errors.h"
+#include "softbody/held_tube.h"
 
 namespace cathlab {
 namespace {
 
 PushRig rig() {
-    PushRig out;
-    out.particle_spacing_mm = 3.0;
-    out.lumen = straight_lumen(12.0, 40.0, out.particle_spacing_mm);
-    out.thickness_mm = 1.5;
-    out.young_kpa = 1200.0;
-    for (const double z : {0.0, 40.0}) out.held.push_back({Vec3(0, 0, z), Vec3::UnitZ(), 15.0, 0.1});
-    return out;
+    return held_tube(40.0);
 }
 
 /// What the rig itself does, as if it had been measured.

@@ -7,19 +7,10 @@
 #include <cmath>
 
 #include "core/errors.h"
+#include "softbody/held_tube.h"
 
 namespace cathlab {
 namespace {
-
-PushRig tube_rig() {
-    PushRig rig;
-    rig.particle_spacing_mm = 3.0;
-    rig.lumen = straight_lumen(12.0, 60.0, rig.particle_spacing_mm);
-    rig.thickness_mm = 1.5;
-    rig.young_kpa = 1200.0;
-    for (const double z : {0.0, 60.0}) rig.held.push_back({Vec3(0, 0, z), Vec3::UnitZ(), 15.0, 0.1});
-    return rig;
-}
 
 /// In steps of 0.5 mm from just touching along +x at mid-length.
 Push outward(double depth) {
@@ -30,7 +21,7 @@ Push outward(double depth) {
 }
 
 TEST(PushRig, TheWallGoesWhereTheBallGoesAndPushesBackHarderTheFurther) {
-    const PushedWall wall(tube_rig());
+    const PushedWall wall(held_tube(60.0));
     const PushResult result = wall.push(outward(2.0));
     ASSERT_TRUE(result.at_rest);
     EXPECT_NEAR(result.force_mn.front(), 0.0, 5.0);
@@ -42,7 +33,7 @@ TEST(PushRig, TheWallGoesWhereTheBallGoesAndPushesBackHarderTheFurther) {
 }
 
 TEST(PushRig, ForceIsProportionalToTheModulus) {
-    PushRig rig = tube_rig();
+    PushRig rig = held_tube(60.0);
     const double soft = PushedWall(rig).push(outward(1.0)).force_mn.back();
     rig.young_kpa *= 2.0;
     const double stiff = PushedWall(rig).push(outward(1.0)).force_mn.back();
@@ -50,7 +41,7 @@ TEST(PushRig, ForceIsProportionalToTheModulus) {
 }
 
 TEST(PushRig, UnloadingIsLoadingOnceMore) {
-    const PushedWall wall(tube_rig());
+    const PushedWall wall(held_tube(60.0));
     Push push = outward(1.0);
     push.ball_mm.push_back(push.ball_mm[1]);
     const PushResult result = wall.push(push);
@@ -59,22 +50,22 @@ TEST(PushRig, UnloadingIsLoadingOnceMore) {
 }
 
 TEST(PushRig, WhatIsHeldNowhereOrHasNoSizeIsTold) {
-    PushRig rig = tube_rig();
+    PushRig rig = held_tube(60.0);
     rig.held.clear();
     EXPECT_THROW(PushedWall{rig}, UserError);
-    rig = tube_rig();
+    rig = held_tube(60.0);
     rig.thickness_mm = 0.0;
     EXPECT_THROW(PushedWall{rig}, UserError);
-    rig = tube_rig();
+    rig = held_tube(60.0);
     rig.lumen = {};
     EXPECT_THROW(PushedWall{rig}, UserError);
-    rig = tube_rig();
+    rig = held_tube(60.0);
     rig.young_kpa = -1.0;
     EXPECT_THROW(PushedWall{rig}, UserError);
 }
 
 TEST(PushRig, APushThatIsStoppedSaysSo) {
-    const PushedWall wall(tube_rig());
+    const PushedWall wall(held_tube(60.0));
     const PushResult result = wall.push(outward(1.0), [] { return false; });
     EXPECT_FALSE(result.at_rest);
     EXPECT_TRUE(std::isnan(result.force_mn.back()));
