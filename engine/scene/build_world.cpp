@@ -72,8 +72,13 @@ void override_regions(const SceneSpec& spec, AnatomyModel& anatomy, WallParamete
         if (wanted.particle_spacing_mm) region.particle_spacing_mm = *wanted.particle_spacing_mm;
         if (wanted.wall_thickness_mm) region.wall_thickness_mm = *wanted.wall_thickness_mm;
         if (wanted.force_limit_n) region.force_limit_n = *wanted.force_limit_n;
-        parameters.regions.push_back(
-            {index, wanted.cluster_spacing_mm, wanted.cluster_radius_mm, wanted.cluster_stiffness, {}});
+        RegionWall& own = parameters.regions.emplace_back();
+        own.region = index;
+        own.cluster_spacing_mm = wanted.cluster_spacing_mm;
+        own.cluster_radius_mm = wanted.cluster_radius_mm;
+        own.cluster_stiffness = wanted.cluster_stiffness;
+        own.young_kpa = wanted.young_kpa;
+        own.poisson = wanted.poisson;
     }
 }
 

@@ -38,7 +38,7 @@ struct SceneAnatomy {
 /// [[wall.region]]: what differs in one region of the wall.
 struct SceneWallRegion {
     std::string name;
-    std::optional<double> cluster_spacing_mm, cluster_radius_mm, cluster_stiffness;
+    std::optional<double> cluster_spacing_mm, cluster_radius_mm, cluster_stiffness, young_kpa, poisson;
     std::optional<double> particle_spacing_mm, wall_thickness_mm, force_limit_n;
     SourcePlace where;
 };
@@ -48,7 +48,10 @@ struct SceneWall {
     double particle_spacing_mm = 2.1;  ///< in the aorta; narrower vessels get at least eight particles round the lumen
     double cluster_spacing_mm = 8.0;
     double cluster_radius_mm = 12.0;
+    std::string form = "clusters";   ///< or "elastic": what makes the wall stiff
     double cluster_stiffness = 0.8;  ///< t_c
+    double young_kpa = 500.0;        ///< of the elastic form
+    double poisson = 0.49;           ///< of the elastic form
     double density_kg_m3 = 1060.0;
     double damping_per_s = 10.0;
     double surrounding_kpa_per_mm = 0.02;     ///< elastic foundation: tissue around the vessels
@@ -104,6 +107,23 @@ struct SceneForce {
     double filter_s = 0.2;  ///< of the force bar's mean filter
 };
 
+/// [[rig.station]]: where a rig of kind "stations" loads and reads the wall.
+struct SceneRigStation {
+    std::string name;
+    std::string region;              ///< of the anatomy, or "": then landmark says where
+    std::string landmark;            ///< of the anatomy, or "": then region and place_mm say where
+    std::optional<double> place_mm;  ///< along the region's centre-line from where it begins; empty = its middle
+    SourcePlace where;
+};
+
+/// [rig]: how a calibration loads the wall of the scene's anatomy.  A run passes it over.
+struct SceneRig {
+    std::string kind = "auto";                  ///< auto, tube, stations, ring, strip, block
+    std::optional<double> length_mm, width_mm;  ///< of the piece that ring, strip and block are cut to
+    std::vector<SceneRigStation> stations;      ///< empty = one in each region that has room
+    SourcePlace where;
+};
+
 /// [effects.NAME]: a section switches the effect on unless it says enabled = false.
 struct SceneEffect {
     const EffectInfo* info = nullptr;
@@ -137,6 +157,7 @@ struct SceneSpec {
     SceneCArm c_arm;
     SceneContrast contrast;
     SceneForce force;
+    SceneRig rig;
     std::vector<SceneEffect> effects = all_effects_off();  ///< one an entry of effect_table(), in its order
     SceneVideo video;
 

@@ -54,6 +54,8 @@ Table<SceneWall> wall_table() {
                     "distance between clusters")
             .number("cluster_radius_mm", &SceneWallRegion::cluster_radius_mm, "mm", {0.5, 100}, "reach of a cluster")
             .number("cluster_stiffness", &SceneWallRegion::cluster_stiffness, "1", {0, 0.999}, "t_c")
+            .number("young_kpa", &SceneWallRegion::young_kpa, "kPa", {0.1, 1e6}, "Young's modulus, elastic form")
+            .number("poisson", &SceneWallRegion::poisson, "1", {0, 0.4999}, "Poisson's ratio, elastic form")
             .number("particle_spacing_mm", &SceneWallRegion::particle_spacing_mm, "mm", {0.2, 10},
                     "distance between particles")
             .number("wall_thickness_mm", &SceneWallRegion::wall_thickness_mm, "mm", {0.1, 5}, "thickness of the wall")
@@ -66,6 +68,13 @@ Table<SceneWall> wall_table() {
         .number("cluster_radius_mm", &SceneWall::cluster_radius_mm, "mm", {0.5, 100},
                 "reach of a cluster along the wall, r_c")
         .number("cluster_stiffness", &SceneWall::cluster_stiffness, "1", {0, 0.999}, "t_c, 0 = limp, near 1 = stiff")
+        .choice(
+            "form", &SceneWall::form, {"clusters", "elastic"},
+            "what makes the wall stiff: the clusters by cluster_stiffness, or a shell by young_kpa, poisson and the "
+            "regions' wall_thickness_mm; then the clusters only damp")
+        .number("young_kpa", &SceneWall::young_kpa, "kPa", {0.1, 1e6},
+                "Young's modulus of the wall at rest, elastic form")
+        .number("poisson", &SceneWall::poisson, "1", {0, 0.4999}, "Poisson's ratio of the wall, elastic form")
         .number("density_kg_m3", &SceneWall::density_kg_m3, "kg/m3", {100, 20000}, "density of the wall")
         .number("surrounding_kpa_per_mm", &SceneWall::surrounding_kpa_per_mm, "kPa/mm", {0, 100},
                 "stiffness of the tissue around the vessels, an elastic foundation; 0 = nothing around them")
@@ -115,6 +124,27 @@ Table<SceneCArm> c_arm_table() {
                        "a landmark, 'centre' for the middle of the lumen's box, or a point")
         .number("frame_rate", &SceneCArm::frame_rate, "1/s", {1, 30}, "7.5, 15 or 30 frames a second")
         .place(&SceneCArm::where);
+}
+
+Table<SceneRig> rig_table() {
+    const auto station =
+        Table<SceneRigStation>("where a rig of kind \"stations\" loads and reads the wall")
+            .text("name", &SceneRigStation::name, "of the station, for the report")
+            .required()
+            .text("region", &SceneRigStation::region, "of the anatomy; its middle, or place_mm along it")
+            .text("landmark", &SceneRigStation::landmark, "of the anatomy; instead of a region")
+            .number("place_mm", &SceneRigStation::place_mm, "mm", {0, 2000},
+                    "along the region's centre-line from where it begins")
+            .place(&SceneRigStation::where);
+    return Table<SceneRig>("how a calibration loads the wall of this scene's anatomy; a run passes it over")
+        .choice(
+            "kind", &SceneRig::kind, {"auto", "tube", "stations", "ring", "strip", "block"},
+            "auto = tube where the anatomy is one straight vessel, else stations; ring, strip and block are cut from "
+            "such a tube")
+        .number("length_mm", &SceneRig::length_mm, "mm", {1, 500}, "of a strip or block, along the pull")
+        .number("width_mm", &SceneRig::width_mm, "mm", {1, 500}, "of a ring along its axis; of a strip or block")
+        .tables("station", &SceneRig::stations, station)
+        .place(&SceneRig::where);
 }
 
 // Sections [effects.NAME] are made at run time from the manifest, one field a Parameter.
@@ -186,6 +216,7 @@ Table<SceneSpec> make_scene_table() {
         .table("c_arm", &SceneSpec::c_arm, c_arm_table())
         .table("contrast", &SceneSpec::contrast, contrast)
         .table("force", &SceneSpec::force, force)
+        .table("rig", &SceneSpec::rig, rig_table())
         .table("video", &SceneSpec::video, video);
     return add_effects(scene);
 }

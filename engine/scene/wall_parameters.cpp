@@ -8,6 +8,9 @@ WallParameters wall_parameters(const SceneWall& wall) {
     out.density_kg_mm3 = wall.density_kg_m3 * per_m3;
     out.cluster_spacing_mm = wall.cluster_spacing_mm;
     out.cluster_radius_mm = wall.cluster_radius_mm;
+    out.form = wall.form == "elastic" ? WallForm::elastic : WallForm::clusters;
+    out.young_kpa = wall.young_kpa;
+    out.poisson = wall.poisson;
     out.cluster_stiffness = wall.cluster_stiffness;
     out.damping_per_s = wall.damping_per_s;
     out.surrounding_kpa_per_mm = wall.surrounding_kpa_per_mm;

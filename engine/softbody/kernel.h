@@ -46,6 +46,30 @@ struct Particles {
 };
 using Walk = void (*)(const Particles& p, std::size_t begin, std::size_t end);
 
+/// ElasticGroups (softbody/elastic.h) and the fibres of the moment.
+inline constexpr std::size_t elastic_constants = 13;
+inline constexpr double elastic_least_det = 1e-12;
+struct Elastic {
+    const std::int32_t* first_slot;
+    const std::int32_t* place;
+    const double* second;
+    const double* constant;
+    const double* scale;  ///< (n) factor on all stiffnesses, or null
+    double fibre_stiffness, fibre_exponent, fibre_onset, fibre_limit, fibre_cosine, fibre_sine;
+};
+/// Forces of triangle groups [begin, end) at x: slot_force (slots x 3 x 8), mN, and tangent (groups x 8), how many
+/// times as stiff as at rest a triangle is now.
+using ShellForces = void (*)(const Elastic& elastic, const double* x, double* slot_force, double* tangent,
+                             std::size_t begin, std::size_t end);
+/// Which slots a particle has: slot_force[from[first[i] .. first[i + 1])], the other two axes 8 and 16 further on.
+struct ElasticSources {
+    const std::int32_t* first;
+    const std::int32_t* from;
+};
+/// goal = x + force / stiffness for particles [begin, end).
+using ShellGoals = void (*)(const ElasticSources& sources, const double* slot_force, const double* x,
+                            const double* stiffness, double* goal, std::size_t begin, std::size_t end);
+
 /// Takes x back to the ball of radius `farthest` around start (3 numbers each) where it left it.
 void limit_way(const double* start, double farthest, double* x);
 
@@ -60,6 +84,8 @@ struct Set {
     Walk predict;  ///< solver.h says what each of the three does
     Walk apply;
     Walk finish;
+    ShellForces shell_forces;
+    ShellGoals shell_goals;
     Polar polar_double;
     Polar polar_float;
 };

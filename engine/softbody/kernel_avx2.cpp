@@ -12,8 +12,9 @@ namespace {
 }  // namespace
 
 const Set* avx2() {
-    static const Set set{"AVX2",          fit_double,       fit_float,       gather_goals,  predict_particles,
-                         apply_particles, finish_particles, polar_of_double, polar_of_float};
+    static const Set set{"AVX2",          fit_double,       fit_float,    gather_goals, predict_particles,
+                         apply_particles, finish_particles, shell_forces, shell_goals,  polar_of_double,
+                         polar_of_float};
     return __builtin_cpu_supports("avx2") ? &set : nullptr;
 }
 

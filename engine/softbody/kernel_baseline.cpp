@@ -10,8 +10,9 @@ namespace {
 }  // namespace
 
 const Set& baseline() {
-    static const Set set{"SSE2",          fit_double,       fit_float,       gather_goals,  predict_particles,
-                         apply_particles, finish_particles, polar_of_double, polar_of_float};
+    static const Set set{"SSE2",          fit_double,       fit_float,    gather_goals, predict_particles,
+                         apply_particles, finish_particles, shell_forces, shell_goals,  polar_of_double,
+                         polar_of_float};
     return set;
 }
 

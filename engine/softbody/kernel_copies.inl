@@ -50,3 +50,4 @@ TARGET static inline void places(const double* from, const std::int32_t* place, 
 #include "softbody/gather.inl"
 #undef GATHER
 #include "softbody/particles.inl"
+#include "softbody/elastic.inl"

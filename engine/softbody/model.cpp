@@ -30,12 +30,18 @@ void check_stiffness(const std::string& name, double value) {
     require(value >= 0.0 && value <= largest_stiffness, name, value, "between 0 and 0.999");
 }
 
+void check_poisson(const std::string& name, double value) {
+    require(value >= 0.0 && value <= 0.4999, name, value, "between 0 and 0.4999");
+}
+
 void check(const WallParameters& p) {
     check_positive("density_kg_mm3", p.density_kg_mm3);
     check_positive("cluster_spacing_mm", p.cluster_spacing_mm);
     check_positive("cluster_radius_mm", p.cluster_radius_mm);
     check_positive("reference_spacing_mm", p.reference_spacing_mm);
     check_stiffness("cluster_stiffness", p.cluster_stiffness);
+    check_positive("young_kpa", p.young_kpa);
+    check_poisson("poisson", p.poisson);
     require(p.surrounding_kpa_per_mm >= 0.0 && std::isfinite(p.surrounding_kpa_per_mm), "surrounding_kpa_per_mm",
             p.surrounding_kpa_per_mm, "0 or above");
     require(p.surrounding_kpa_s_per_mm >= 0.0 && std::isfinite(p.surrounding_kpa_s_per_mm), "surrounding_kpa_s_per_mm",
@@ -43,6 +49,8 @@ void check(const WallParameters& p) {
     require(p.damping_per_s >= 0.0 && std::isfinite(p.damping_per_s), "damping_per_s", p.damping_per_s, "0 or above");
     require(p.max_speed_mm_s > 0.0, "max_speed_mm_s", p.max_speed_mm_s, "above 0");
     for (const RegionWall& own : p.regions) {
+        if (own.young_kpa) check_positive("young_kpa of a region", *own.young_kpa);
+        if (own.poisson) check_poisson("poisson of a region", *own.poisson);
         if (own.cluster_spacing_mm) check_positive("cluster_spacing_mm of a region", *own.cluster_spacing_mm);
         if (own.cluster_radius_mm) check_positive("cluster_radius_mm of a region", *own.cluster_radius_mm);
         if (own.density_kg_mm3) check_positive("density_kg_mm3 of a region", *own.density_kg_mm3);
@@ -83,6 +91,32 @@ std::vector<FreeBody> find_free_bodies(const Membership& membership, const std::
     return bodies;
 }
 
+/// A triangle has the mean of its corners' numbers: where two regions meet the wall changes over one triangle.
+void make_elastic(const WallSample& sample, const WallParameters& parameters, SoftBodyModel& model) {
+    if (sample.triangles.empty())
+        throw UserError("wall: the elastic form wants a wall of triangles; this one has none");
+    std::vector<double> young(model.size(), parameters.young_kpa), poisson(model.size(), parameters.poisson);
+    for (std::size_t i = 0; i < model.size(); ++i)
+        for (const RegionWall& own : parameters.regions)
+            if (own.region == sample.region[i]) {
+                young[i] = own.young_kpa.value_or(young[i]);
+                poisson[i] = own.poisson.value_or(poisson[i]);
+            }
+    std::vector<ShellMaterial> material;
+    for (const Triangle& t : sample.triangles) {
+        ShellMaterial m{0.0, 0.0, 0.0};
+        for (int k = 0; k < 3; ++k) {
+            m.young_kpa += young[at(t[k])] / 3.0;
+            m.poisson += poisson[at(t[k])] / 3.0;
+            m.thickness_mm += sample.thickness_mm[at(t[k])] / 3.0;
+        }
+        material.push_back(m);
+    }
+    model.shell = build_shell(sample.position, sample.triangles, material, sample.along);
+    model.elastic = pack_shell(model.shell);
+    model.stiffness = holding_stiffness(model.shell, model.rest);
+}
+
 }  // namespace
 
 SoftBodyModel build_soft_body(const WallSample& sample, const WallParameters& parameters,
@@ -118,6 +152,8 @@ SoftBodyModel build_soft_body(const WallSample& sample, const WallParameters& pa
             model.drag.push_back(parameters.surrounding_kpa_s_per_mm * sample.area_mm2[i]);
         model.fixed.push_back(is_fixed && is_fixed(sample.position[i]) ? 1 : 0);
     }
+    model.form = parameters.form;
+    if (model.form == WallForm::elastic) make_elastic(sample, parameters, model);
     const Membership membership = grow_clusters(sample, parameters);
     pack_clusters(membership, model);
     if (model.support.empty() && model.drag.empty()) model.free_bodies = find_free_bodies(membership, model.fixed);

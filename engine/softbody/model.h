@@ -13,6 +13,7 @@
 
 #include "core/types.h"
 #include "softbody/aligned.h"
+#include "softbody/elastic.h"
 #include "softbody/kernel.h"
 #include "softbody/wall_sample.h"
 
@@ -33,11 +34,19 @@ inline constexpr double reference_step_s = 0.5e-3;
 struct RegionWall {
     Index region = 0;
     std::optional<double> cluster_spacing_mm, cluster_radius_mm, cluster_stiffness, density_kg_mm3;
+    std::optional<double> young_kpa = {}, poisson = {};
 };
 
 enum class Precision { float_, double_ };
 
+/// What makes the wall stiff: the paper's clusters by t_c, or an elastic shell by E, nu and its thickness (elastic.h),
+/// for which the clusters damp alone.
+enum class WallForm { clusters, elastic };
+
 struct WallParameters {
+    WallForm form = WallForm::clusters;
+    double young_kpa = 500.0;  ///< E at rest, > 0; elastic form
+    double poisson = 0.49;     ///< nu, 0 to 0.4999; elastic form
     double density_kg_mm3 = 1.06e-6;
     double cluster_spacing_mm = 8.0;  ///< s_c: a cluster for each s_c^2 of wall
     double cluster_radius_mm = 12.0;  ///< r_c: a cluster holds what lies within r_c along the wall
@@ -86,7 +95,7 @@ struct SoftBodyModel {
     std::vector<Vec3> rest;                      ///< (n) mm
     std::vector<Vec3> normal;                    ///< (n) unit, out of the lumen, at rest
     std::vector<double> mass;                    ///< (n) kg
-    std::vector<double> stiffness;               ///< (n) k_i, mN/mm
+    std::vector<double> stiffness;               ///< (n) k_i, mN/mm; elastic form: at rest
     std::vector<double> support;                 ///< (n) stiffness of what surrounds the wall, mN/mm; empty = none
     std::vector<double> drag;                    ///< (n) its damping, mN s/mm; empty = none
     std::vector<std::uint8_t> fixed;             ///< (n) 1 = follows its support
@@ -103,6 +112,9 @@ struct SoftBodyModel {
     ClusterGroups<double> clusters;       ///< filled where precision is double_
     ClusterGroups<float> clusters_float;  ///< filled where precision is float_
     std::vector<FreeBody> free_bodies;
+    WallForm form = WallForm::clusters;
+    ShellModel shell;       ///< elastic form
+    ElasticGroups elastic;  ///< the same for the solver's loops
 
     std::size_t size() const { return rest.size(); }
     std::size_t membership_count() const { return cluster.size(); }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/check.h"
+
 namespace cathlab {
 
 double kinetic_energy(const SoftBodyModel& model, const SoftBodyState& state) {
@@ -11,6 +13,10 @@ double kinetic_energy(const SoftBodyModel& model, const SoftBodyState& state) {
 }
 
 double elastic_energy(const SoftBodyModel& model, const SoftBodyState& state, const SoftBodyScratch& scratch) {
+    if (model.form == WallForm::elastic) {
+        CATHLAB_CHECK(scratch.stiffness_scale.empty(), "the energy of a scaled shell is not told");
+        return shell_energy(model.shell, state.x, scratch.fibres);
+    }
     double sum = 0.0;
     for (std::size_t i = 0; i < model.size(); ++i) {
         const double scale = scratch.stiffness_scale.empty() ? 1.0 : scratch.stiffness_scale[i];

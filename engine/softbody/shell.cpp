@@ -169,32 +169,51 @@ struct Now {
     Matrix32 gradient;  // F
     Matrix2d c, c_inverse;
     Vec3 normal;
-    double log_j = 0.0;
+    double determinant = 1.0, thinner = 1.0;  // d, d^-a
 
     Now(const ShellTriangle& t, std::span<const Vec3> x) {
         Matrix32 edges;
         edges << x[at(t.corner[1])] - x[at(t.corner[0])], x[at(t.corner[2])] - x[at(t.corner[0])];
         gradient = edges * t.rest_inverse;
         c = gradient.transpose() * gradient;
-        const double det = std::max(c.determinant(), least_det);
-        c_inverse << c(1, 1) / det, -c(0, 1) / det, -c(1, 0) / det, c(0, 0) / det;
-        log_j = 0.5 * det::log(det);
+        determinant = std::max(c.determinant(), least_det);
+        c_inverse << c(1, 1), -c(0, 1), -c(1, 0), c(0, 0);
+        c_inverse /= determinant;
+        thinner = det::pow(determinant, -t.thinning);
         normal = gradient.col(0).cross(gradient.col(1));
         normal /= std::max(normal.norm(), 1e-300);
     }
 };
 
-/// Square of the thickness' stretch: Newton in its logarithm, where the equation is convex and monotone.
-double thinning(const ShellTriangle& t, double log_j) {
-    double z = -2.0 * log_j * t.lambda_kpa / (t.lambda_kpa + 2.0 * t.mu_kpa);
-    for (int k = 0; k < 40; ++k) {
-        const double e = det::exp(z);
-        const double change =
-            (t.mu_kpa * (e - 1.0) + t.lambda_kpa * (log_j + 0.5 * z)) / (t.mu_kpa * e + 0.5 * t.lambda_kpa);
-        z -= change;
-        if (std::fabs(change) < 1e-15) break;
+/// Of a triangle's fibres, by the energy of their volume.
+struct Stretched {
+    Matrix2d direction[2];  // H of each family
+    FibreTension tension[2];
+    double energy_kpa = 0.0;
+
+    Stretched(const ShellTriangle& t, const Fibres& f, const Matrix2d& c) {
+        const double cosine = f.cosine(), sine = f.sine();
+        for (int k = 0; k < 2; ++k) {
+            const double side = k == 0 ? sine : -sine;
+            const double along = t.round.x() * cosine - t.round.y() * side,
+                         across = t.round.y() * cosine + t.round.x() * side;
+            direction[k] << 0.5 + along, across, across, 0.5 - along;
+            const double e = direction[k].cwiseProduct(c).sum() - 1.0 - f.onset;
+            tension[k] = fibre_tension(f, e);
+            energy_kpa += fibre_energy(f, e);
+        }
     }
-    return det::exp(z);
+    Matrix2d stress() const { return 2.0 * (tension[0].tension * direction[0] + tension[1].tension * direction[1]); }
+};
+
+/// Twice the angle from the first edge to what is across the vessel's direction.
+Vector2d round_of(const ShellTriangle& t, std::span<const Vec3> rest, std::span<const Vec3> along) {
+    const Vec3 first = (rest[at(t.corner[1])] - rest[at(t.corner[0])]).normalized();
+    const Vec3 normal = first.cross(rest[at(t.corner[2])] - rest[at(t.corner[0])]).normalized();
+    const Vec3 round = normal.cross(along[at(t.corner[0])] + along[at(t.corner[1])] + along[at(t.corner[2])]);
+    const double x = round.dot(first), y = round.dot(normal.cross(first)), squared = x * x + y * y;
+    if (!(squared > 1e-12)) return Vector2d::Zero();
+    return Vector2d(x * x - y * y, 2.0 * x * y) / squared;
 }
 
 Matrix23 corner_gradients(const ShellTriangle& t) {
@@ -223,7 +242,8 @@ Mat3 bending_matrix(const ShellTriangle& t) {
 }  // namespace
 
 ShellModel build_shell(std::span<const Vec3> rest, std::span<const Triangle> triangles,
-                       std::span<const ShellMaterial> material) {
+                       std::span<const ShellMaterial> material, std::span<const Vec3> along) {
+    CATHLAB_CHECK(along.empty() || along.size() == rest.size(), "one direction a particle");
     CATHLAB_CHECK(material.size() == 1 || material.size() == triangles.size(), "one material, or one a triangle");
     for (const ShellMaterial& m : material) check_material(m);
     const Neighbours neighbours(triangles);
@@ -247,7 +267,8 @@ ShellModel build_shell(std::span<const Vec3> rest, std::span<const Triangle> tri
         t.thickness_mm = m.thickness_mm;
         t.poisson = m.poisson;
         t.mu_kpa = m.young_kpa / (2.0 * (1.0 + m.poisson));
-        t.lambda_kpa = m.young_kpa * m.poisson / ((1.0 + m.poisson) * (1.0 - 2.0 * m.poisson));
+        t.thinning = m.poisson / (1.0 - m.poisson);
+        if (!along.empty()) t.round = round_of(t, rest, along);
         t.bending_mn_mm =
             m.young_kpa * m.thickness_mm * m.thickness_mm * m.thickness_mm / (12.0 * (1.0 - m.poisson * m.poisson));
         set_bending(t, rest, triangles, neighbours, k);
@@ -261,24 +282,25 @@ Eigen::Matrix2d shell_strain(const ShellTriangle& triangle, std::span<const Vec3
     return 0.5 * (Now(triangle, x).c - Matrix2d::Identity());
 }
 
-double shell_energy(const ShellModel& model, std::span<const Vec3> x) {
+double shell_energy(const ShellModel& model, std::span<const Vec3> x, const Fibres& fibres) {
     double energy = 0.0;
     for (const ShellTriangle& t : model.triangles) {
         const Now now(t, x);
-        const double y = thinning(t, now.log_j), volume = now.log_j + 0.5 * det::log(y);
-        const double membrane =
-            0.5 * t.mu_kpa * (now.c.trace() + y - 3.0 - 2.0 * volume) + 0.5 * t.lambda_kpa * volume * volume;
+        const double thinned = t.thinning > 0.0 ? (now.thinner - 1.0) / t.thinning : -det::log(now.determinant);
+        double membrane = 0.5 * t.mu_kpa * (now.c.trace() - 2.0 + thinned);
+        if (fibres.any()) membrane += Stretched(t, fibres, now.c).energy_kpa;
         const Vec3 kappa = second_of(t, x).transpose() * now.normal - t.rest_curvature;
         energy += t.area_mm2 * (t.thickness_mm * membrane + 0.5 * kappa.dot(bending_matrix(t) * kappa));
     }
     return energy;
 }
 
-void add_shell_forces(const ShellModel& model, std::span<const Vec3> x, std::span<Vec3> force) {
+void add_shell_forces(const ShellModel& model, std::span<const Vec3> x, std::span<Vec3> force, const Fibres& fibres) {
     CATHLAB_CHECK(x.size() >= model.particles && force.size() >= model.particles, "one place and one force a particle");
     for (const ShellTriangle& t : model.triangles) {
         const Now now(t, x);
-        const Matrix2d stress = t.mu_kpa * (Matrix2d::Identity() - thinning(t, now.log_j) * now.c_inverse);
+        Matrix2d stress = t.mu_kpa * (Matrix2d::Identity() - now.thinner * now.c_inverse);
+        if (fibres.any()) stress += Stretched(t, fibres, now.c).stress();
         const Matrix23 g = corner_gradients(t);
         const Mat3 on_corner = -t.area_mm2 * t.thickness_mm * now.gradient * stress * g;
         const Mat3 b = second_of(t, x);
@@ -290,7 +312,7 @@ void add_shell_forces(const ShellModel& model, std::span<const Vec3> x, std::spa
     }
 }
 
-Eigen::SparseMatrix<double> shell_stiffness(const ShellModel& model, std::span<const Vec3> x) {
+Eigen::SparseMatrix<double> shell_stiffness(const ShellModel& model, std::span<const Vec3> x, const Fibres& fibres) {
     std::vector<Eigen::Triplet<double>> entries;
     const auto add = [&](Index i, Index j, const Mat3& block) {
         if (i < j) return;
@@ -301,12 +323,13 @@ Eigen::SparseMatrix<double> shell_stiffness(const ShellModel& model, std::span<c
     };
     for (const ShellTriangle& t : model.triangles) {
         const Now now(t, x);
-        const double y = thinning(t, now.log_j);
-        const Matrix2d stress = t.mu_kpa * (Matrix2d::Identity() - y * now.c_inverse);
+        const double y = now.thinner;
+        const Stretched fibre(t, fibres, now.c);
+        Matrix2d stress = t.mu_kpa * (Matrix2d::Identity() - y * now.c_inverse);
+        if (fibres.any()) stress += fibre.stress();
         const Eigen::SelfAdjointEigenSolver<Matrix2d> axes(stress);
         const Matrix2d pulled =
             axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.eigenvectors().transpose();
-        const double thinner = 0.5 * t.lambda_kpa / (t.mu_kpa + 0.5 * t.lambda_kpa / y);
         const Matrix23 g = corner_gradients(t);
         const double size = t.area_mm2 * t.thickness_mm;
         for (int j = 0; j < 3; ++j)
@@ -314,8 +337,11 @@ Eigen::SparseMatrix<double> shell_stiffness(const ShellModel& model, std::span<c
                 Matrix32 change = Matrix32::Zero();
                 change.row(axis) = g.col(j).transpose();
                 const Matrix2d dc = change.transpose() * now.gradient + now.gradient.transpose() * change;
-                const Matrix2d ds = t.mu_kpa * (thinner * (now.c_inverse * dc).trace() * now.c_inverse +
-                                                y * now.c_inverse * dc * now.c_inverse);
+                Matrix2d ds =
+                    t.mu_kpa * y *
+                    (t.thinning * (now.c_inverse * dc).trace() * now.c_inverse + now.c_inverse * dc * now.c_inverse);
+                for (int k = 0; fibres.any() && k < 2; ++k)
+                    ds += 2.0 * fibre.tension[k].slope * fibre.direction[k].cwiseProduct(dc).sum() * fibre.direction[k];
                 const Mat3 column = size * (change * pulled + now.gradient * ds) * g;  // one column a corner
                 for (int i = 0; i < 3; ++i) {
                     Mat3 block = Mat3::Zero();

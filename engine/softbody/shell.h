@@ -2,9 +2,11 @@
 // bent.  The particles lie on the shell's middle surface.
 //
 // Membrane: neo-Hookean, thickness free (plane stress), constant strain in a triangle.  With F the gradient of the
-// triangle's deformation (3 x 2), C = F^T F, J = sqrt(det C) and mu, lambda of E and nu, the thickness' stretch s obeys
-//     mu (s^2 - 1) + lambda ln(J s) = 0,          and the stress is  S = mu (1 - s^2 C^-1)   (second Piola-Kirchhoff).
-// Small strains: Hooke's law in plane stress.  nu -> 1/2: s = 1 / J, incompressible.
+// triangle's deformation (3 x 2), C = F^T F, d = det C, mu = E / (2 (1 + nu)) and a = nu / (1 - nu), of the volume at
+// rest
+//     energy = mu/2 [ tr C - 2 + (d^-a - 1) / a ],      stress  S = mu (1 - d^-a C^-1)   (second Piola-Kirchhoff);
+// d^-a is the square of the thickness' stretch: Ogden's compressible neo-Hookean solid, whose stress across the wall is
+// 0. Small strains: Hooke's law in plane stress.  nu -> 1/2: the wall keeps its volume.  Fibres (fibres.h) add theirs.
 //
 // Bending: Koiter's, isotropic.  b = n . (second derivatives of position), by a quadratic through the triangle and its
 // neighbours (rotation-free triangles, [flores2005]), n the triangle's normal; with kappa = b - b at rest
@@ -18,6 +20,7 @@
 #include <vector>
 
 #include "core/types.h"
+#include "softbody/fibres.h"
 
 namespace cathlab {
 
@@ -32,8 +35,12 @@ struct ShellTriangle {
     Eigen::Matrix2d
         rest_inverse;       ///< F = [x1 - x0, x2 - x0] rest_inverse, in an orthonormal frame of the triangle at rest
     double area_mm2 = 0.0;  ///< at rest
-    double mu_kpa = 0.0, lambda_kpa = 0.0, thickness_mm = 0.0;
-    double bending_mn_mm = 0.0;  ///< D
+    double mu_kpa = 0.0, thickness_mm = 0.0;
+    double thinning = 0.0;  ///< a = nu / (1 - nu)
+    Eigen::Vector2d round =
+        Eigen::Vector2d::Zero();  ///< cos, sin of twice the angle from the frame's first axis to the
+                                  ///< vessel's circumference; 0, 0: fibres lie in every direction
+    double bending_mn_mm = 0.0;   ///< D
     double poisson = 0.0;
     Vec3 rest_curvature = Vec3::Zero();  ///< b at rest: 11, 22, 12, 1/mm, in that frame
     std::vector<Index> patch;            ///< particles that bending sees, the corners first
@@ -47,18 +54,21 @@ struct ShellModel {
 
 /// rest: (n) mm.  triangles: outward, no edge shared by more than two (CATHLAB_CHECK).  material: one a triangle, or
 /// one for all.  Throws UserError for numbers out of range and for a triangle without area.
+/// along: the vessel's direction, one a particle (any length; 0 = none), or empty for none: fibres go round it.
 ShellModel build_shell(std::span<const Vec3> rest, std::span<const Triangle> triangles,
-                       std::span<const ShellMaterial> material);
+                       std::span<const ShellMaterial> material, std::span<const Vec3> along = {});
 
 /// Stored energy at positions x (n), uJ.
-double shell_energy(const ShellModel& model, std::span<const Vec3> x);
+double shell_energy(const ShellModel& model, std::span<const Vec3> x, const Fibres& fibres = {});
 
 /// Adds the forces of the shell on its particles, mN (minus the energy's gradient).
-void add_shell_forces(const ShellModel& model, std::span<const Vec3> x, std::span<Vec3> force);
+void add_shell_forces(const ShellModel& model, std::span<const Vec3> x, std::span<Vec3> force,
+                      const Fibres& fibres = {});
 
 /// The energy's second derivatives at x (3n x 3n, lower triangle), mN/mm, without the parts that may make it
 /// indefinite: compressed membranes' geometric stiffness, and the change of the normals in bending.
-Eigen::SparseMatrix<double> shell_stiffness(const ShellModel& model, std::span<const Vec3> x);
+Eigen::SparseMatrix<double> shell_stiffness(const ShellModel& model, std::span<const Vec3> x,
+                                            const Fibres& fibres = {});
 
 /// Green's strain of a triangle at x, in its rest frame.
 Eigen::Matrix2d shell_strain(const ShellTriangle& triangle, std::span<const Vec3> x);

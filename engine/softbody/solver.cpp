@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t particle_grain = 1024;
 constexpr std::size_t group_grain = 8;
-constexpr std::size_t piece = 128;  // particles
+constexpr std::size_t shell_grain = 32;  // groups of triangles
+constexpr std::size_t piece = 128;       // particles
 constexpr std::size_t run_grain = 16;
 constexpr Index run_gap = 8;              // particles between two runs that are cheaper to take along than to go round
 constexpr double largest_guess_mm = 0.5;  // of a force's share in the start of the first fit
@@ -73,12 +74,54 @@ void gather(const SoftBodyModel& model, SoftBodyScratch& scratch, const kernel::
     set.gather(model.goals.view(), scratch.transform.data(), numbers(model.rest), numbers(scratch.goal), begin, end);
 }
 
+bool elastic(const SoftBodyModel& model) {
+    return model.form == WallForm::elastic;
+}
+
+/// Forces of groups [begin, end) of the shell's triangles at state.x.
+void pull(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, std::size_t begin,
+          std::size_t end) {
+    const kernel::Elastic view = model.elastic.view(scratch.fibres, numbers(scratch.stiffness_scale));
+    kernel::best().shell_forces(view, numbers(state.x), scratch.slot_force.data(), state.tangent.data(), begin, end);
+}
+
+/// Goals of the shell for particles [begin, end).
+void shell_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, std::size_t begin,
+                 std::size_t end) {
+    kernel::best().shell_goals(model.elastic.sources(), scratch.slot_force.data(), numbers(state.x),
+                               scratch.hold.data(), numbers(scratch.goal), begin, end);
+}
+
+void pull_all(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
+    scratch.slot_force.resize(model.elastic.slots() * 3 * kernel::lanes);
+    scratch.goal.resize(model.size());
+    workers.for_ranges(model.elastic.groups(), shell_grain,
+                       [&](std::size_t begin, std::size_t end) { pull(model, state, scratch, begin, end); });
+}
+
+/// Fits the clusters, or has the shell pull, as state.x is.
+void prepare_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
+    if (elastic(model))
+        pull_all(model, state, scratch, workers);
+    else
+        fit_all(model, state, scratch, workers);
+}
+
+/// Goals of particles [begin, end): of the clusters as they are fitted, or of the shell as it pulls.
+void find_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const kernel::Set& set,
+                std::size_t begin, std::size_t end) {
+    if (elastic(model))
+        shell_goals(model, state, scratch, begin, end);
+    else
+        gather(model, scratch, set, begin, end);
+}
+
 kernel::Particles particles(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h) {
     const std::size_t n = model.size();
     kernel::Particles p{};
     p.mass = model.mass.data();
-    p.stiffness = model.stiffness.data();
-    p.stiffness_scale = numbers(scratch.stiffness_scale);
+    p.stiffness = elastic(model) ? numbers(scratch.hold) : model.stiffness.data();
+    p.stiffness_scale = elastic(model) ? nullptr : numbers(scratch.stiffness_scale);
     p.support = numbers(model.support);
     p.drag = numbers(model.drag);
     p.rest = numbers(model.rest);
@@ -111,6 +154,61 @@ void momentum_of(const SoftBodyModel& model, const SoftBodyState& state, const F
     }
 }
 
+/// A free body as a rigid one: where its centre of mass is, and what its momentum does to it.
+struct RigidMotion {
+    Vec3 centre = Vec3::Zero(), velocity = Vec3::Zero(), spin = Vec3::Zero();
+};
+
+/// linear, angular (about `origin`): momentum that the body has, or is to get.
+RigidMotion rigid_motion(const SoftBodyModel& model, std::span<const Vec3> x, const FreeBody& body, const Vec3& origin,
+                         const Vec3& linear, const Vec3& angular) {
+    double mass = 0.0;
+    Vec3 moment = Vec3::Zero();
+    for (const Index i : body.particles) {
+        mass += model.mass[at(i)];
+        moment += model.mass[at(i)] * (x[at(i)] - origin);
+    }
+    const Vec3 centre = moment / mass, torque = angular - centre.cross(linear);
+    Mat3 inertia = Mat3::Zero();
+    for (const Index i : body.particles) {
+        const Vec3 r = x[at(i)] - origin - centre;
+        inertia += model.mass[at(i)] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+    }
+    const Eigen::SelfAdjointEigenSolver<Mat3> axes(inertia);
+    Vec3 spin = Vec3::Zero();  // a line of particles cannot spin about itself: that axis is left out
+    for (int k = 0; k < 3; ++k)
+        if (axes.eigenvalues()[k] > 1e-9 * axes.eigenvalues()[2])
+            spin += axes.eigenvectors().col(k) * (axes.eigenvectors().col(k).dot(torque) / axes.eigenvalues()[k]);
+    return {origin + centre, linear / mass, spin};
+}
+
+/// Adds the rigid velocity field that brings the body's momentum to the wanted one.
+void restore_momentum(const SoftBodyModel& model, SoftBodyState& state, const FreeBody& body, const Vec3& origin,
+                      const Vec3& wanted_linear, const Vec3& wanted_angular) {
+    Vec3 linear, angular;
+    momentum_of(model, state, body, origin, linear, angular);
+    const RigidMotion missing =
+        rigid_motion(model, state.x, body, origin, wanted_linear - linear, wanted_angular - angular);
+    for (const Index i : body.particles)
+        state.v[at(i)] += missing.velocity + missing.spin.cross(state.x[at(i)] - missing.centre);
+}
+
+/// Velocities are ways along a chord: a turning body's prediction by them would swell, and in the elastic form, where a
+/// particle gives way as if it were heavy, be thrown outwards.  This takes it back to the circle.
+void turn_prediction(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+                     std::size_t body) {
+    const std::vector<Index>& particles = model.free_bodies[body].particles;
+    // The state's places are the prediction's by now.
+    const Vec3& origin = scratch.start[at(particles.front())];
+    const RigidMotion motion = rigid_motion(model, scratch.start, model.free_bodies[body], origin,
+                                            scratch.momentum[2 * body], scratch.momentum[2 * body + 1]);
+    for (const Index i : particles) {
+        const Vec3 inwards = h * h * motion.spin.cross(motion.spin.cross(scratch.start[at(i)] - motion.centre));
+        scratch.predicted[at(i)] += inwards;
+        state.x[at(i)] += inwards;
+    }
+}
+
 void predict_with(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
                   const SupportMotion* supports, std::span<const Vec3> external_force, const Workers& workers) {
     const std::size_t n = model.size();
@@ -129,6 +227,12 @@ void predict_with(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScra
     scratch.force.resize(n);
     scratch.predicted.resize(n);
     scratch.compliance.resize(n);
+    if (elastic(model)) {
+        scratch.hold.resize(n);
+        workers.for_ranges(n, particle_grain, [&](std::size_t begin, std::size_t end) {
+            hold_now(model.elastic, model.stiffness, state.tangent, scratch.hold, begin, end);
+        });
+    }
     kernel::Particles walked = particles(model, state, scratch, h);
     if (supports) {
         walked.support_before = numbers(supports->before);
@@ -150,33 +254,8 @@ void predict_with(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScra
             state.x[i] += length > largest_guess_mm ? Vec3(pull * (largest_guess_mm / length)) : pull;
         }
     });
-}
-
-/// Adds the rigid velocity field that brings the body's momentum to the wanted one.
-void restore_momentum(const SoftBodyModel& model, SoftBodyState& state, const FreeBody& body, const Vec3& origin,
-                      const Vec3& wanted_linear, const Vec3& wanted_angular) {
-    Vec3 linear, angular;
-    momentum_of(model, state, body, origin, linear, angular);
-    double mass = 0.0;
-    Vec3 moment = Vec3::Zero();
-    for (const Index i : body.particles) {
-        mass += model.mass[at(i)];
-        moment += model.mass[at(i)] * (state.x[at(i)] - origin);
-    }
-    const Vec3 centre = moment / mass;
-    const Vec3 shift = (wanted_linear - linear) / mass;
-    const Vec3 torque = wanted_angular - angular - centre.cross(wanted_linear - linear);
-    Mat3 inertia = Mat3::Zero();
-    for (const Index i : body.particles) {
-        const Vec3 r = state.x[at(i)] - origin - centre;
-        inertia += model.mass[at(i)] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
-    }
-    const Eigen::SelfAdjointEigenSolver<Mat3> axes(inertia);
-    Vec3 spin = Vec3::Zero();  // a line of particles cannot spin about itself: that axis is left out
-    for (int k = 0; k < 3; ++k)
-        if (axes.eigenvalues()[k] > 1e-9 * axes.eigenvalues()[2])
-            spin += axes.eigenvectors().col(k) * (axes.eigenvectors().col(k).dot(torque) / axes.eigenvalues()[k]);
-    for (const Index i : body.particles) state.v[at(i)] += shift + spin.cross(state.x[at(i)] - origin - centre);
+    if (elastic(model))
+        for (std::size_t b = 0; b < model.free_bodies.size(); ++b) turn_prediction(model, state, scratch, h, b);
 }
 
 }  // namespace
@@ -186,6 +265,7 @@ void visit(Archive& archive, SoftBodyState& state) {
     archive.field("v", state.v);
     archive.field("goal", state.goal);
     archive.field("rotation", state.rotation);
+    if (!state.tangent.empty()) archive.field("tangent", state.tangent);
 }
 
 SoftBodyState rest_state(const SoftBodyModel& model) {
@@ -196,6 +276,7 @@ SoftBodyState rest_state(const SoftBodyModel& model) {
     state.rotation.assign(model.group_count() * 4 * kernel::lanes, 0.0);
     for (std::size_t g = 0; g < model.group_count(); ++g)
         std::fill_n(state.rotation.begin() + static_cast<std::ptrdiff_t>(g * 4 * kernel::lanes), kernel::lanes, 1.0);
+    state.tangent.assign(model.elastic.groups() * kernel::lanes, 1.0);
     return state;
 }
 
@@ -212,23 +293,23 @@ void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& 
 }
 
 void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
-    fit_all(model, state, scratch, workers);
+    prepare_goals(model, state, scratch, workers);
     const kernel::Set& set = kernel::best();
     workers.for_ranges(model.size(), particle_grain,
-                       [&](std::size_t begin, std::size_t end) { gather(model, scratch, set, begin, end); });
+                       [&](std::size_t begin, std::size_t end) { find_goals(model, state, scratch, set, begin, end); });
 }
 
 void solve_and_apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
                      const Workers& workers) {
     CATHLAB_CHECK(scratch.force.size() == model.size(), "predict comes before");
-    fit_all(model, state, scratch, workers);
+    prepare_goals(model, state, scratch, workers);
     const kernel::Set& set = kernel::best();
     const kernel::Particles walked = particles(model, state, scratch, h);
     workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
         // Piece by piece, so that the goals are still at hand when they are applied.
         for (std::size_t first = begin; first < end; first += piece) {
             const std::size_t last = std::min(first + piece, end);
-            gather(model, scratch, set, first, last);
+            find_goals(model, state, scratch, set, first, last);
             set.apply(walked, first, last);
         }
     });
@@ -268,6 +349,30 @@ std::vector<std::pair<Index, Index>> runs_of(const std::vector<std::uint8_t>& ma
     return runs;
 }
 
+/// The particles that triangles with a touched one see, and all triangles that see one of those: what these particles
+/// feel is then known anew.
+void grow_part(const ElasticGroups& shell, std::vector<std::uint8_t>& particle, WallPart& part) {
+    std::vector<std::uint8_t> group(shell.groups(), 0);
+    const auto each_source = [&](std::size_t i, auto&& f) {
+        for (std::int32_t k = shell.source_first[i]; k < shell.source_first[i + 1]; ++k) {
+            const std::size_t offset = at(shell.source[at(k)]);
+            f(at(shell.group_of_slot[offset / (3 * kernel::lanes)]), offset % kernel::lanes);
+        }
+    };
+    for (const auto& [begin, end] : part.touched)
+        for (std::size_t i = at(begin); i < at(end); ++i)
+            each_source(i, [&](std::size_t g, std::size_t lane) {
+                for (std::size_t s = at(shell.first_slot[g]); s < at(shell.first_slot[g + 1]); ++s)
+                    particle[at(shell.place[s * kernel::lanes + lane]) / 3] = 1;
+            });
+    part.runs = runs_of(particle);
+    for (const auto& [begin, end] : part.runs)
+        for (std::size_t i = at(begin); i < at(end); ++i)
+            each_source(i, [&](std::size_t g, std::size_t) { group[g] = 1; });
+    for (std::size_t g = 0; g < group.size(); ++g)
+        if (group[g]) part.groups.push_back(static_cast<Index>(g));
+}
+
 }  // namespace
 
 WallPart part_around(const SoftBodyModel& model, std::span<const Index> touched) {
@@ -275,6 +380,10 @@ WallPart part_around(const SoftBodyModel& model, std::span<const Index> touched)
     for (const Index i : touched) particle[at(i)] = 1;
     WallPart part;
     part.touched = runs_of(particle);
+    if (elastic(model)) {
+        grow_part(model.elastic, particle, part);
+        return part;
+    }
     for (const auto& [first, last] : part.touched)
         for (Index i = first; i < last; ++i) {
             if (!particle[at(i)]) continue;
@@ -304,12 +413,15 @@ void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScrat
     workers.for_ranges(part.groups.size(), group_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const std::size_t g = at(part.groups[k]);
-            clusters.fit(set, state, scratch, g, g + 1);
+            if (elastic(model))
+                pull(model, state, scratch, g, g + 1);
+            else
+                clusters.fit(set, state, scratch, g, g + 1);
         }
     });
     workers.for_ranges(part.runs.size(), run_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k)
-            gather(model, scratch, set, at(part.runs[k].first), at(part.runs[k].second));
+            find_goals(model, state, scratch, set, at(part.runs[k].first), at(part.runs[k].second));
     });
 }
 
@@ -333,10 +445,15 @@ void apply_touched(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScr
 
 void finish(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
             const Workers& workers) {
+    if (elastic(model)) {  // the velocities go over to those of the clusters' rigid motions here as well
+        fit_all(model, state, scratch, workers);
+        workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
+            gather(model, scratch, kernel::best(), begin, end);
+        });
+    }
     const kernel::Particles walked = particles(model, state, scratch, h);
     workers.for_ranges(model.size(), particle_grain,
                        [&](std::size_t begin, std::size_t end) { kernel::best().finish(walked, begin, end); });
-    // The next fit writes all of them anew.
     if (walked.goal) state.goal.swap(scratch.goal);  // the next fit writes all of them anew
     for (std::size_t b = 0; b < model.free_bodies.size(); ++b) {
         const FreeBody& body = model.free_bodies[b];

@@ -4,7 +4,8 @@
 //     x_i = (m_i/h^2 x~_i + k_i g_i + f_i) / (m_i/h^2 + k_i)          m kg, h s, k mN/mm, f mN
 // with x~ the prediction and g the mean of the goals  R_c (X_i - X_c) + x_c  of its clusters.  A force of rows
 // therefore moves the particle by its compliance  c_i = 1 / (m_i/h^2 + k_i)  within an iteration, and in equilibrium
-// k_i (x_i - g_i) = f_i whatever the step and the number of iterations.
+// k_i (x_i - g_i) = f_i whatever the step and the number of iterations.  In the wall's elastic form (elastic.h) the
+// goals come from a shell's forces, and the clusters are fitted once, at the end, to damp.
 #pragma once
 
 #include <span>
@@ -23,6 +24,7 @@ struct SoftBodyState {
     std::vector<Vec3> v;           ///< (n) mm/s
     std::vector<Vec3> goal;        ///< (n) mm, the goals at the end of the last substep (damping)
     std::vector<double> rotation;  ///< (groups x {w, x, y, z} x 8) of the clusters, warm start of their fits
+    std::vector<double> tangent;   ///< elastic form: (triangle groups x 8) how much stiffer than at rest each one is
 };
 void visit(Archive& archive, SoftBodyState& state);
 
@@ -36,8 +38,11 @@ struct SoftBodyScratch {
     std::vector<double> compliance;    ///< (n) c_i, mm/mN, written by predict; 0 for fixed particles
     std::vector<double>
         stiffness_scale;  ///< (n) factor on k_i, > 0, or empty for 1: effects of the material write it before predict
-    AlignedVector<double> transform;  ///< (lanes x 12) of the clusters
-    std::vector<Vec3> momentum;       ///< linear and angular of each free body when the substep began, two each
+    Fibres fibres;        ///< of the elastic form: an effect of the material writes them before predict
+    AlignedVector<double> transform;   ///< (lanes x 12) of the clusters
+    std::vector<double> hold;          ///< elastic form: (n) k_i now, written by predict
+    AlignedVector<double> slot_force;  ///< elastic form: (slots x 3 x 8) of the triangles on their particles
+    std::vector<Vec3> momentum;        ///< linear and angular of each free body when the substep began, two each
 };
 
 SoftBodyState rest_state(const SoftBodyModel& model);

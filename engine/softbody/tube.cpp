@@ -92,7 +92,9 @@ WallSample tube_sample(const TubeShape& shape, double spacing_mm, double thickne
     const TriMesh mesh = tube_mesh(shape);
     const std::vector<double> spacing(mesh.vertices.size(), spacing_mm);
     const std::vector<double> thickness{thickness_mm};
-    return sample_wall(mesh, std::vector<Index>(mesh.vertices.size(), 0), spacing, thickness, seed);
+    WallSample sample = sample_wall(mesh, std::vector<Index>(mesh.vertices.size(), 0), spacing, thickness, seed);
+    sample.along.assign(sample.position.size(), shape.axis);
+    return sample;
 }
 
 }  // namespace cathlab

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "core/check.h"
@@ -119,10 +120,16 @@ WallSample sample_wall(const TriMesh& fine, const std::vector<Index>& fine_regio
     }
     std::sort(sample.links.begin(), sample.links.end());
     sample.links.erase(std::unique(sample.links.begin(), sample.links.end()), sample.links.end());
+    // A cell that is no disc (in a vessel hardly wider than its particles are apart) can meet two others twice: only
+    // the first triangle at a side of an edge is taken, so that the triangles are a surface.
+    std::set<std::pair<Index, Index>> taken;
     for (const Triangle& t : fine.triangles) {
         const Triangle met(cells.label[at(t[0])], cells.label[at(t[1])], cells.label[at(t[2])]);
-        if (met.minCoeff() >= 0 && met[0] != met[1] && met[1] != met[2] && met[2] != met[0])
-            sample.triangles.push_back(met);
+        if (met.minCoeff() < 0 || met[0] == met[1] || met[1] == met[2] || met[2] == met[0]) continue;
+        const std::pair<Index, Index> sides[3] = {{met[0], met[1]}, {met[1], met[2]}, {met[2], met[0]}};
+        if (std::any_of(sides, sides + 3, [&](const auto& side) { return taken.contains(side); })) continue;
+        taken.insert(sides, sides + 3);
+        sample.triangles.push_back(met);
     }
     return sample;
 }

@@ -20,6 +20,7 @@ struct WallSample {
     std::vector<Index> region;         ///< (n)
     std::vector<std::pair<Index, Index>> links;  ///< a < b, ascending: particles whose cells touch along the wall
     std::vector<Triangle> triangles;             ///< of particles, outward: where three cells meet
+    std::vector<Vec3> along;                     ///< (n) the vessel's direction, any length; empty = not known
 };
 
 /// The spacing that puts at least eight particles round a lumen: min(wanted, 2 pi radius / 9.5).

@@ -89,7 +89,7 @@ TEST(SoftBodyModel, ParametersOutOfRangeAreRefusedByName) {
     refused([](WallParameters& p) { p.cluster_spacing_mm = 0.0; }, "cluster_spacing_mm");
     refused([](WallParameters& p) { p.density_kg_mm3 = -1.0; }, "density_kg_mm3");
     refused([](WallParameters& p) { p.damping_per_s = -1.0; }, "damping_per_s");
-    refused([](WallParameters& p) { p.regions.push_back({0, {}, {}, 1.5, {}}); }, "cluster_stiffness of a region");
+    refused([](WallParameters& p) { p.regions.emplace_back().cluster_stiffness = 1.5; }, "cluster_stiffness of a region");
     EXPECT_THROW(build_soft_body(WallSample{}, {}, nullptr), UserError);
 }
 
