@@ -115,6 +115,32 @@ TEST_P(Preset, ItTwistsAndStretchesByTheSumOfItsSections) {
     EXPECT_NEAR(pulled.link_pose(0).position.z() - z, longer, 0.01 * longer);
 }
 
+TEST_P(Preset, UnloadedItTakesTheShapeThatItsSectionsSay) {
+    const WireSpec spec = load_wire(std::string(CATHLAB_SOURCE_DIR) + "/assets/devices/" + GetParam() + ".toml");
+    const double insertion = 150.0;
+    Rod rod(spec, {}, insertion);
+    for (int i = 0; i < 150; ++i) test::substep(rod, 0.2);
+    // From the mouth to the tip: z inward, bent towards y by each section's own curvature.
+    double angle = 0.0, y = 0.0, z = 0.0;
+    const int pieces = 15000;
+    for (int i = 0; i < pieces; ++i) {
+        const double ds = insertion / pieces, s = insertion - (i + 0.5) * ds;
+        angle += ds * test::section_at(spec, s).rest_curvature_per_mm;
+        y += ds * std::sin(angle);
+        z += ds * std::cos(angle);
+    }
+    std::printf("%s: tip turned by %.0f deg\n", GetParam().c_str(), angle * 57.29578);
+    EXPECT_NEAR(std::fabs(rod.tip().y()), y, 0.2);
+    EXPECT_NEAR(rod.tip().z(), z, 0.2);
+    EXPECT_NEAR(rod.tip().x(), 0.0, 1e-6);
+    EXPECT_LT(rod.energy_uj(), 1e-3);
+    // Turned at the sheath by a right angle it bends to the side instead.
+    for (int i = 0; i < 100; ++i) test::substep(rod, 0.02, {}, {}, 0.0, 0.01 * 1.5707963);
+    for (int i = 0; i < 150; ++i) test::substep(rod, 0.2);
+    EXPECT_NEAR(std::fabs(rod.tip().x()), y, 0.2);
+    EXPECT_NEAR(rod.tip().y(), 0.0, 0.2);
+}
+
 INSTANTIATE_TEST_SUITE_P(EveryWire, Preset, testing::ValuesIn(wires()), [](const auto& info) {
     std::string name = info.param;
     for (char& c : name)
