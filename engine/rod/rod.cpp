@@ -64,34 +64,42 @@ void Rod::Impl::grow(std::size_t length, double at, double turned) {
 void Rod::Impl::update_joints() {
     const std::size_t free = free_count();
     for (std::size_t i = 0; i + 1 < world.size(); ++i)
-        world.set_joint(i, joint_stiffness(links[i], links[i + 1], insertion));
+        world.set_joint(i, joint_stiffness(links[i], links[i + 1], insertion, i + 1 == front ? sleeve->turn : 0.0));
     for (std::size_t i = 0; i < world.size(); ++i) world.set_held(i, i >= free);
+}
+
+void Rod::Impl::begin(const WireSpec& wire, const SheathPose& grip, std::span<const Vec3> path) {
+    CATHLAB_CHECK(finite(grip.mouth.position) && std::isfinite(grip.mouth.orientation.squaredNorm()) &&
+                      std::isfinite(grip.length_mm) && grip.length_mm > 0.0,
+                  "the sheath's pose must be finite and its length positive");
+    for (const Vec3& p : path) CATHLAB_CHECK(finite(p), "the initial path must be finite");
+    spec = wire;
+    sheath = grip;
+    sheath.mouth.orientation.normalize();
+}
+
+void Rod::Impl::lay(std::span<const Vec3> path) {
+    grow(chain_length(insertion), insertion, 0.0);
+    const std::vector<Pose> poses = lay_along(links, free_count(), insertion, sheath.mouth, path);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        x[i] = poses[i].position;
+        q[i] = poses[i].orientation;
+        world.set_motion(i, {poses[i], Vec3::Zero(), Vec3::Zero()});
+    }
+    update_joints();
 }
 
 Rod::Rod(const WireSpec& spec, const SheathPose& sheath, double initial_insertion_mm,
          std::span<const Vec3> initial_path)
     : impl_(std::make_unique<Impl>()) {
     validate(spec);
-    CATHLAB_CHECK(finite(sheath.mouth.position) && std::isfinite(sheath.mouth.orientation.squaredNorm()) &&
-                      std::isfinite(sheath.length_mm) && sheath.length_mm > 0.0,
-                  "the sheath's pose must be finite and its length positive");
-    for (const Vec3& p : initial_path) CATHLAB_CHECK(finite(p), "the initial path must be finite");
     Impl& m = *impl_;
-    m.spec = spec;
-    m.sheath = sheath;
-    m.sheath.mouth.orientation.normalize();
+    m.begin(spec, sheath, initial_path);
     m.links = cut_into_links(spec);
     m.tension.assign(m.links.size(), 0.0);
     CATHLAB_CHECK(std::isfinite(initial_insertion_mm), "the initial insertion must be finite");
     m.insertion = std::clamp(initial_insertion_mm, min_insertion_mm(), max_insertion_mm());
-    m.grow(m.chain_length(m.insertion), m.insertion, 0.0);
-    const std::vector<Pose> poses = lay_along(m.links, m.free_count(), m.insertion, m.sheath.mouth, initial_path);
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-        m.x[i] = poses[i].position;
-        m.q[i] = poses[i].orientation;
-        m.world.set_motion(i, {poses[i], Vec3::Zero(), Vec3::Zero()});
-    }
-    m.update_joints();
+    m.lay(initial_path);
 }
 
 Rod::~Rod() = default;
@@ -100,6 +108,14 @@ Rod& Rod::operator=(Rod&&) noexcept = default;
 
 double Rod::command(double advance_mm, double rotate_rad) {
     Impl& m = *impl_;
+    if (m.sleeve) {
+        SleeveState& s = *m.sleeve;
+        const double before = s.wire_insertion;
+        if (std::isfinite(rotate_rad)) s.wire_rotation += std::clamp(rotate_rad, -max_turn_rad, max_turn_rad);
+        const double step = std::isfinite(advance_mm) ? std::clamp(advance_mm, -max_travel_mm(), max_travel_mm()) : 0.0;
+        m.slide(std::clamp(before + step, min_insertion_mm(), max_insertion_mm()), s.insertion, m.rotation);
+        return s.wire_insertion - before;
+    }
     const double before = m.insertion, turned = m.rotation;
     if (std::isfinite(advance_mm)) {
         const double step = std::clamp(advance_mm, -max_travel_mm(), max_travel_mm());
@@ -143,6 +159,7 @@ void Rod::finish(double h) {
         const Vec3 turn = det::vector_from_rotation(m.q[i] * m.q_start[i].conjugate());
         m.world.set_motion(i, {{m.x[i], m.q[i]}, (m.x[i] - m.x_start[i]) / h, turn / h});
     }
+    if (m.sleeve) m.measure_rubbing(h);
 }
 
 std::size_t Rod::link_count() const {
@@ -168,39 +185,29 @@ double Rod::link_mass(std::size_t i) const {
     return impl_->links.at(i).mass;
 }
 const std::string& Rod::material(std::size_t i) const {
-    return impl_->spec.sections[static_cast<std::size_t>(impl_->links.at(i).section)].material;
-}
-
-Vec3 Rod::tip() const {
     const Impl& m = *impl_;
-    return m.x[0] + m.q[0] * Vec3(0.0, 0.0, 0.5 * m.links[0].length);
+    const bool tube = m.sleeve && i >= m.front;
+    const std::vector<WireSection>& sections = tube ? m.sleeve->spec.sections : m.spec.sections;
+    return sections[static_cast<std::size_t>(m.links.at(i).section)].material;
 }
 
 std::vector<Vec3> Rod::polyline() const {
     const Impl& m = *impl_;
-    std::vector<Vec3> points{tip()};
+    std::vector<Vec3> points{m.x[0] + m.q[0] * Vec3(0.0, 0.0, 0.5 * m.links[0].length)};
     points.reserve(m.count() + 1);
     for (std::size_t i = 0; i < m.count(); ++i)
         points.push_back(m.x[i] + m.q[i] * Vec3(0.0, 0.0, -0.5 * m.links[i].length));
     return points;
 }
 
-double Rod::insertion_mm() const {
-    return impl_->insertion;
-}
 double Rod::rotation_rad() const {
-    return impl_->rotation;
-}
-double Rod::min_insertion_mm() const {
-    return impl_->links[1].end();
-}
-double Rod::max_insertion_mm() const {
-    return impl_->links.back().start;
+    return impl_->sleeve ? impl_->sleeve->wire_rotation : impl_->rotation;
 }
 Vec3 Rod::sheath_reaction_mn() const {
     return impl_->sheath_reaction;
 }
 double Rod::sheath_force_mn() const {
+    if (impl_->sleeve) return impl_->wire_force_mn();
     return impl_->sheath_reaction.dot(impl_->sheath.mouth.orientation * Vec3::UnitZ());
 }
 double Rod::sheath_torque_mn_mm() const {
@@ -224,7 +231,7 @@ void Rod::samples(double spacing_mm, std::vector<RodSample>& out) const {
         const WireLink& link = m.links[i];
         const Vec3 axis = m.q[i] * Vec3::UnitZ();
         const double pieces = std::max(1.0, std::ceil(link.length / spacing_mm - 1e-9));
-        for (int k = i == 0 ? 0 : 1; k <= pieces; ++k) {
+        for (int k = i == 0 || i == m.front ? 0 : 1; k <= pieces; ++k) {  // a catheter's end is wider than the wire
             const double s = link.length * k / pieces;
             if (link.start + s > m.insertion) break;
             const Vec3 arm = axis * (0.5 * link.length - s);
@@ -248,6 +255,12 @@ void visit(Archive& archive, Rod& rod) {
     archive.field("velocity", velocity);
     archive.field("spin", spin);
     archive.field("tension", m.tension);
+    if (!m.sleeve) return;
+    archive.field("wire_insertion", m.sleeve->wire_insertion);
+    archive.field("wire_rotation", m.sleeve->wire_rotation);
+    archive.field("sleeve_insertion", m.sleeve->insertion);
+    archive.field("turn", m.sleeve->turn);
+    archive.field("play", m.sleeve->play);
 }
 
 }  // namespace cathlab

@@ -9,6 +9,7 @@
 #include "core/archive.h"
 #include "core/types.h"
 #include "rod/chain_row.h"
+#include "rod/sleeve_spec.h"
 #include "rod/wire_spec.h"
 
 namespace cathlab {
@@ -35,6 +36,12 @@ public:
     /// is not finite.
     Rod(const WireSpec& spec, const SheathPose& sheath, double initial_insertion_mm,
         std::span<const Vec3> initial_path = {});
+    /// The same with a passive catheter over the wire (coaxial.h): one chain in which EI, GJ and EA add.  Either is
+    /// moved by its own grip and may lead; the chain's links are then the wire's alone in front and the catheter's
+    /// behind. Rotation: the chain behind the catheter's tip turns with the catheter, the wire beyond it by the
+    /// difference of the two grips more, less what friction between them holds back.
+    Rod(const WireSpec& spec, const SleeveSpec& sleeve, const SheathPose& sheath, double wire_insertion_mm,
+        double sleeve_insertion_mm, std::span<const Vec3> initial_path = {});
     ~Rod();
     Rod(Rod&&) noexcept;
     Rod& operator=(Rod&&) noexcept;
@@ -43,6 +50,9 @@ public:
     /// follows. An advance beyond max_travel_mm(), a turn beyond 0.5 rad and an insertion out of range are clamped;
     /// what is not finite counts as zero.  Returns the advance that was taken, mm.
     double command(double advance_mm, double rotate_rad);
+
+    /// The same for the catheter's grip; without a catheter nothing moves.
+    double command_sleeve(double advance_mm, double rotate_rad);
 
     /// Starts a substep of h seconds: x~ = x + h v, q~ = exp(h w) q for every free link, the travel of a link limited
     /// to max_travel_mm() and its turn to 0.5 rad by scaling its velocity.  link_force: external force on the centre of
@@ -70,8 +80,8 @@ public:
     double link_mass(std::size_t i) const;    ///< kg
     const std::string& material(std::size_t i) const;
 
-    Vec3 tip() const;                    ///< front end of link 0, world
-    std::vector<Vec3> polyline() const;  ///< the tip, then the rear end of each link in the chain
+    Vec3 tip() const;                    ///< front end of the wire (of link 0, unless a catheter leads), world
+    std::vector<Vec3> polyline() const;  ///< front end of link 0, then the rear end of each link in the chain
 
     /// Material beyond the mouth, mm; from the length of the first two links to the wire's less its last link.
     double insertion_mm() const;
@@ -84,6 +94,22 @@ public:
     Vec3 sheath_reaction_mn() const;
     double sheath_force_mn() const;
     double sheath_torque_mn_mm() const;
+
+    /// The catheter over the wire; without one: false, 0 and the wire's tip.
+    bool has_sleeve() const;
+    std::size_t front_count() const;     ///< links 0 .. front_count() - 1 are wire that is ahead of the catheter
+    double sleeve_insertion_mm() const;  ///< of the catheter beyond the mouth, 0 to its length less its last link
+    double sleeve_rotation_rad() const;  ///< of its grip, since the start
+    Vec3 sleeve_tip() const;             ///< world
+    /// How the hands share sheath_reaction_mn() along the mouth's z: sheath_force_mn() is then the wire's hand, this
+    /// the catheter's.  The wire's carries what the wire ahead of the catheter is pressed with, and what it takes to
+    /// slide.
+    double sleeve_force_mn() const;
+    /// Sum of what wire and catheter press on each other, mN: steps of the shear force of the wire's own bending
+    /// moment. Times wire_friction it is the force that the wire needs to slide, and it lets the wire's tip lag behind
+    /// its grip by the twist that this friction winds up.
+    double sleeve_load_mn() const;
+    double sleeve_play_rad() const;  ///< that lag, either way
 
     /// What blood does to the free wire, from the last solve, mN: damping_per_s, the brake on a link that would travel
     /// further than max_travel_mm(), and the side drag in a contact (chain_rows.h).  Rows, sheath, link_force and this

@@ -4,15 +4,31 @@
 #include "rod/block_chain.h"
 #include "rod/bullet_world.h"
 #include "rod/chain_rows.h"
+#include "rod/coaxial.h"
 #include "rod/rod.h"
 
 namespace cathlab {
 
+/// The catheter over the wire, and how either stands in the other.
+struct SleeveState {
+    SleeveSpec spec;
+    std::vector<WireLink> wire, tube;                  // cut alone
+    double wire_insertion = 0.0, wire_rotation = 0.0;  // of the wire's own grip
+    double insertion = 0.0;                            // of the catheter; its rotation is that of the chain
+    double turn = 0.0;  // of the wire in the catheter at the catheter's tip: the difference of the grips less the play
+    double play = 0.0;  // by how much friction lets it lag, either way, rad
+    double load_mn = 0.0;     // sum of what wire and catheter press on each other
+    double slide_mm = 0.0;    // of the wire through the catheter since the last substep
+    double rubbing_mn = 0.0;  // on the wire's grip, inward positive: what it needs to slide
+};
+
 struct Rod::Impl {
     WireSpec spec;
     SheathPose sheath;
-    std::vector<WireLink> links;  // the whole wire
-    BulletWorld world;            // the part of it that is in the chain
+    std::vector<WireLink> links;          // the whole wire, or wire and catheter as one chain
+    std::unique_ptr<SleeveState> sleeve;  // null = the wire alone
+    std::size_t front = 0;                // with a catheter: so many links are the wire's alone
+    BulletWorld world;                    // the part of it that is in the chain
     double insertion = 0.0;
     double rotation = 0.0;
 
@@ -41,11 +57,20 @@ struct Rod::Impl {
     /// Links in the chain at an insertion: the free ones, and those that the sheath holds over its length.
     std::size_t chain_length(double insertion) const;
     void grow(std::size_t count, double insertion, double rotation);
+    void begin(const WireSpec& wire, const SheathPose& grip, std::span<const Vec3> path);
+    /// Lays what is free along a path, at rest.
+    void lay(std::span<const Vec3> path);
     void update_joints();
     void assemble(double h);
     void assemble_joint(std::size_t i, std::size_t free);
     std::size_t update_brakes(double h);
     void apply_solution(double h);
+
+    // With a catheter (rod_sleeve.cpp).
+    void slide(double wire_insertion, double sleeve_insertion, double sleeve_rotation);
+    std::vector<BodyMotion> reshaped(const Coaxial& next, double wire_insertion, double sleeve_insertion) const;
+    void measure_rubbing(double h);
+    double wire_force_mn() const;
 };
 
 }  // namespace cathlab

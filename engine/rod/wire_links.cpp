@@ -46,15 +46,23 @@ std::vector<WireLink> cut_into_links(const WireSpec& spec) {
     return links;
 }
 
-JointStiffness joint_stiffness(const WireLink& a, const WireLink& b, double insertion) {
+JointStiffness joint_stiffness(const WireLink& a, const WireLink& b, double insertion, double turn) {
     const double half_a = 0.5 * a.length, half_b = 0.5 * b.length;
     double free_a = std::clamp(insertion - a.centre(), 0.0, half_a);
     double free_b = std::clamp(insertion - b.start, 0.0, half_b);
     JointStiffness joint;
     joint.span = free_a + free_b;
-    const double angle = a.curvature * free_a + b.curvature * free_b;
-    joint.curved = angle != 0.0;
-    if (joint.curved) joint.rest = det::rotation_from_vector(Vec3(angle, 0.0, 0.0));
+    // b's share of the bend, seen in a's frame.
+    double bx = b.curvature, by = b.curvature_side;
+    if (turn != 0.0) {
+        const double c = det::cos(turn), s = det::sin(turn);
+        bx = c * b.curvature + s * b.curvature_side;
+        by = c * b.curvature_side - s * b.curvature;
+    }
+    const Vec3 angle(a.curvature * free_a + bx * free_b, a.curvature_side * free_a + by * free_b, 0.0);
+    joint.curved = angle.x() != 0.0 || angle.y() != 0.0 || turn != 0.0;
+    if (joint.curved) joint.rest = det::rotation_from_vector(angle);
+    if (turn != 0.0) joint.rest = joint.rest * Quat(det::cos(0.5 * turn), 0.0, 0.0, -det::sin(0.5 * turn));
     const double least = least_free_share * (half_a + half_b);
     if (joint.span < least) {
         free_a = least * half_a / (half_a + half_b);

@@ -14,7 +14,8 @@ struct WireLink {
     double mass = 0.0;    ///< kg
     double inertia_across = 0.0, inertia_along = 0.0;  ///< of a solid cylinder about its centre, kg mm2
     double bend = 0.0, twist = 0.0, axial = 0.0;       ///< EI, GJ in mN mm2; EA in mN
-    double curvature = 0.0;                            ///< rest curvature, 1/mm
+    double curvature = 0.0;                            ///< rest curvature, 1/mm: a turn about the link's x axis
+    double curvature_side = 0.0;                       ///< the same about its y axis
     Index section = 0;
 
     double end() const { return start + length; }
@@ -37,6 +38,7 @@ struct JointStiffness {
 /// (arc length < insertion) can give way: 1/k_bend = integral of ds / EI, and likewise for GJ and EA.  This makes the
 /// clamp second order accurate and lets a link pass the mouth without a jump in stiffness.  A joint with no free
 /// material keeps a hundredth of its compliance, so that the system stays well scaled.
-JointStiffness joint_stiffness(const WireLink& a, const WireLink& b, double insertion);
+/// turn: angle by which a's frame stands turned about the axis against b's when unloaded.
+JointStiffness joint_stiffness(const WireLink& a, const WireLink& b, double insertion, double turn = 0.0);
 
 }  // namespace cathlab
