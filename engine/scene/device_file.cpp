@@ -7,25 +7,26 @@
 namespace cathlab {
 namespace {
 
+Table<WireSection> make_section_table() {
+    return Table<WireSection>("a stretch of wire, tip first; the last one runs to the end of the wire")
+        .number("length_mm", &WireSection::length_mm, "mm", {0, 1e4}, "length; the last section's is not read")
+        .number("diameter_mm", &WireSection::diameter_mm, "mm", {0.05, 10}, "outer diameter")
+        .required()
+        .number("bending_stiffness_n_mm2", &WireSection::bending_stiffness_n_mm2, "N mm2", {1e-3, 1e6}, "EI")
+        .required()
+        .number("torsion_stiffness_n_mm2", &WireSection::torsion_stiffness_n_mm2, "N mm2", {1e-3, 1e6}, "GJ")
+        .required()
+        .number("axial_stiffness_n", &WireSection::axial_stiffness_n, "N", {1, 1e7}, "EA")
+        .required()
+        .number("density_kg_m3", &WireSection::density_kg_m3, "kg/m3", {100, 25000}, "mean over the full circle")
+        .required()
+        .number("rest_curvature_per_mm", &WireSection::rest_curvature_per_mm, "1/mm", {-1, 1}, "of the unloaded wire")
+        .number("link_length_mm", &WireSection::link_length_mm, "mm", {0, 50}, "longest link here; 0 = the wire's")
+        .text("material", &WireSection::material, "a name of assets/materials: what the X-ray image sees")
+        .required();
+}
+
 Table<WireFile> make_wire_table() {
-    const auto section =
-        Table<WireSection>("a stretch of wire, tip first; the last one runs to the end of the wire")
-            .number("length_mm", &WireSection::length_mm, "mm", {0, 1e4}, "length; the last section's is not read")
-            .number("diameter_mm", &WireSection::diameter_mm, "mm", {0.05, 10}, "outer diameter")
-            .required()
-            .number("bending_stiffness_n_mm2", &WireSection::bending_stiffness_n_mm2, "N mm2", {1e-3, 1e6}, "EI")
-            .required()
-            .number("torsion_stiffness_n_mm2", &WireSection::torsion_stiffness_n_mm2, "N mm2", {1e-3, 1e6}, "GJ")
-            .required()
-            .number("axial_stiffness_n", &WireSection::axial_stiffness_n, "N", {1, 1e7}, "EA")
-            .required()
-            .number("density_kg_m3", &WireSection::density_kg_m3, "kg/m3", {100, 25000}, "mean over the full circle")
-            .required()
-            .number("rest_curvature_per_mm", &WireSection::rest_curvature_per_mm, "1/mm", {-1, 1},
-                    "of the unloaded wire")
-            .number("link_length_mm", &WireSection::link_length_mm, "mm", {0, 50}, "longest link here; 0 = the wire's")
-            .text("material", &WireSection::material, "a name of assets/materials: what the X-ray image sees")
-            .required();
     const auto wire =
         Table<WireSpec>("a guidewire")
             .text("name", &WireSpec::name, "its name")
@@ -41,7 +42,7 @@ Table<WireFile> make_wire_table() {
             .number("damping_per_s", &WireSpec::damping_per_s, "1/s", {0, 1e5},
                     "rate at which motion against resting blood dies out")
             .number("spin_damping_per_s", &WireSpec::spin_damping_per_s, "1/s", {0, 1e5}, "the same for turning")
-            .tables("sections", &WireSpec::sections, section, {1, 1000});
+            .tables("sections", &WireSpec::sections, make_section_table(), {1, 1000});
     return Table<WireFile>("a guidewire of cathlab")
         .integer("schema", &WireFile::schema, "1", {1, 1}, "version of this format")
         .required()
@@ -98,11 +99,37 @@ Table<CatheterFile> make_catheter_table() {
         .include(&CatheterFile::spec, catheter);
 }
 
+Table<SleeveFile> make_sleeve_table() {
+    const auto sleeve =
+        Table<SleeveSpec>("a passive catheter")
+            .text("name", &SleeveSpec::name, "its name")
+            .required()
+            .text("source", &SleeveSpec::source, "key in docs/references.md")
+            .number("length_mm", &SleeveSpec::length_mm, "mm", {5, 1e4}, "total length")
+            .required()
+            .number("link_length_mm", &SleeveSpec::link_length_mm, "mm", {0.2, 50}, "longest rigid link")
+            .required()
+            .number("inner_diameter_mm", &SleeveSpec::inner_diameter_mm, "mm", {0.05, 10}, "bore for a guidewire")
+            .required()
+            .number("friction", &SleeveSpec::friction, "1", {0, 2}, "Coulomb coefficient against the wall")
+            .number("wire_friction", &SleeveSpec::wire_friction, "1", {0, 2},
+                    "the same between it and the guidewire inside")
+            .number("max_push_n", &SleeveSpec::max_push_n, "N", {1e-3, 1e3}, "axial force at which the drive slips")
+            .number("max_speed_mm_s", &SleeveSpec::max_speed, "mm/s", {1e-3, 1e3}, "of the drive")
+            .tables("sections", &SleeveSpec::sections, make_section_table(), {1, 1000});
+    return Table<SleeveFile>("a passive catheter of cathlab, over a guidewire")
+        .integer("schema", &SleeveFile::schema, "1", {1, 1}, "version of this format")
+        .required()
+        .choice("kind", &SleeveFile::kind, {"passive_catheter"}, "what the file holds")
+        .required()
+        .include(&SleeveFile::spec, sleeve);
+}
+
 std::string kind_of(const TomlNode& file, const std::string& path) {
     const TomlNode* kind = file.find("kind");
-    const std::vector<std::string> known{"wire", "catheter"};
+    const std::vector<std::string> known{"wire", "catheter", "passive_catheter"};
     if (kind == nullptr) throw UserError({path, 0, "kind"}, "is missing; one of " + comma_list(known) + " is wanted");
-    if (kind->text != known[0] && kind->text != known[1])
+    if (std::find(known.begin(), known.end(), kind->text) == known.end())
         throw UserError(kind->place("kind"), "found " + kind->describe() + "; one of " + comma_list(known) +
                                                  " is wanted" + did_you_mean(kind->text, known));
     return kind->text;
@@ -126,6 +153,16 @@ void check_material(const std::string& path, const std::string& name) {
                         "no material '" + name + "'" + did_you_mean(name, known) + " There is: " + comma_list(known));
 }
 
+template <class Spec>
+void check_sections(const std::string& path, const Spec& spec) {
+    try {
+        validate(spec);
+    } catch (const UserError& error) {
+        throw UserError({path, 0, ""}, error.what());
+    }
+    for (const WireSection& section : spec.sections) check_material(path, section.material);
+}
+
 }  // namespace
 
 const Table<WireFile>& wire_table() {
@@ -138,18 +175,24 @@ const Table<CatheterFile>& catheter_table() {
     return table;
 }
 
+const Table<SleeveFile>& sleeve_table() {
+    static const Table<SleeveFile> table = make_sleeve_table();
+    return table;
+}
+
 std::string device_kind(const std::string& path) {
     return kind_of(load_toml(path), path);
 }
 
 WireSpec load_wire(const std::string& path) {
     WireSpec spec = read_table(load_kind(path, "wire"), wire_table()).spec;
-    try {
-        validate(spec);
-    } catch (const UserError& error) {
-        throw UserError({path, 0, ""}, error.what());
-    }
-    for (const WireSection& section : spec.sections) check_material(path, section.material);
+    check_sections(path, spec);
+    return spec;
+}
+
+SleeveSpec load_sleeve(const std::string& path) {
+    SleeveSpec spec = read_table(load_kind(path, "passive_catheter"), sleeve_table()).spec;
+    check_sections(path, spec);
     return spec;
 }
 

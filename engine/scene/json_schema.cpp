@@ -97,7 +97,8 @@ std::string scene_schema_json() {
 
 std::string device_schema_json() {
     Json out = headed("cathlab device");
-    out["oneOf"] = {format_schema(wire_table().spec()), format_schema(catheter_table().spec())};
+    out["oneOf"] = {format_schema(wire_table().spec()), format_schema(catheter_table().spec()),
+                    format_schema(sleeve_table().spec())};
     return out.dump(2) + "\n";
 }
 

@@ -173,6 +173,8 @@ TEST(Devices, EveryDeviceOfTheProjectIsValid) {
         const std::string path = folder + name + ".toml";
         if (device_kind(path) == "wire")
             EXPECT_NO_THROW(load_wire(path)) << path;
+        else if (device_kind(path) == "passive_catheter")
+            EXPECT_NO_THROW(load_sleeve(path)) << path;
         else
             EXPECT_NO_THROW(load_catheter(path)) << path;
     }
