@@ -26,6 +26,7 @@ find_package(NLopt REQUIRED)
 find_package(Pagmo REQUIRED)
 find_package(GTest 1.12 REQUIRED)
 find_package(benchmark 1.7 REQUIRED)
+pkg_check_modules(XRAYLIB IMPORTED_TARGET libxrl)  # for tests alone, which say so where it is not there
 # Debian builds Bullet in both precisions; only the double one carries a wire in mm without tunnelling.
 pkg_check_modules(BULLET REQUIRED IMPORTED_TARGET bullet-float64)
 pkg_check_modules(FFMPEG REQUIRED IMPORTED_TARGET libavcodec libavformat libavutil libswscale)

@@ -1,6 +1,8 @@
-// Total mass attenuation of the elements, cm2/g, at 20 exp(0.05 k) keV, k = 0..41, and on either side of the K edge where that lies
-// in between.  Printed from xraylib 4.0.0 (CS_Total) [schoonjans2011]; tests/beam/materials_test.cpp compares it with xraylib
-// where that is installed.  Molybdenum's first number is carried back from above its K edge, which lies just below 20 keV.
+// Total mass attenuation of the elements, cm2/g, at 20 exp(0.05 k) keV, k = 0..41, and on either side of the K
+// edge where that lies in between.  Printed from xraylib (CS_Total) [schoonjans2011] by
+//   tests/print_attenuation_table > engine/beam/attenuation_table.inl      (in the build's folder)
+// and compared with it by tests/beam/xraylib_test.cpp.  Molybdenum's first number is carried back from above its
+// K edge, which lies just below 20 keV.
 // Z, K edge in keV (0 = outside), below it, above it, {grid}
 // clang-format off
 {1, 0, 0, 0, {{

@@ -11,7 +11,7 @@ namespace cathlab {
 namespace {
 
 FineSpectrum spectrum_at(const BeamSpec& spec, double kvp) {
-    return fine_spectrum({kvp, spec.aluminium_mm, spec.copper_mm, spec.caesium_iodide_mm});
+    return fine_spectrum({kvp, spec.aluminium_mm, spec.copper_mm, spec.caesium_iodide_mm}, TableReading::straight);
 }
 
 double towards(double now, double target, double most) {
@@ -83,7 +83,7 @@ bool pulse_in_step(std::int64_t step, double dt, double pulses_per_s) {
 double tube_output_ugy_mas(const BeamSpec& spec, double kvp) {
     // Per mAs a thick anode gives photons(E) ~ kvp / E - 1 for any voltage, so the outputs compare as those integrals
     // do.
-    const FineSpectrum reference = fine_spectrum({80.0, 2.5, 0.0, spec.caesium_iodide_mm});
+    const FineSpectrum reference = fine_spectrum({80.0, 2.5, 0.0, spec.caesium_iodide_mm}, TableReading::straight);
     const FineSpectrum filtered = spectrum_at(spec, kvp);
     return spec.tube_output_ugy_mas * filtered.total * filtered.kerma_per_photon /
            (reference.total * reference.kerma_per_photon);

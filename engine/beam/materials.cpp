@@ -33,6 +33,78 @@ double log_log(double log_e, double log_e0, double y0, double log_e1, double y1)
     return det::exp(det::log(y0) + t * (det::log(y1) - det::log(y0)));
 }
 
+double straight(const ElementRow& row, double log_e) {
+    const double log_first = det::log(grid_first_kev);
+    const auto k = std::min(static_cast<std::size_t>((log_e - log_first) / grid_step), grid_size - 2);
+    double log_low = log_first + grid_step * static_cast<double>(k), log_high = log_low + grid_step;
+    double low = row.grid[k], high = row.grid[k + 1];
+    if (row.edge_kev > 0.0) {
+        const double log_edge = det::log(row.edge_kev);
+        if (log_edge > log_low && log_edge < log_high) {
+            if (log_e < log_edge) {
+                log_high = log_edge;
+                high = row.below;
+            } else {
+                log_low = log_edge;
+                low = row.above;
+            }
+        }
+    }
+    return log_log(log_e, log_low, low, log_high, high);
+}
+
+// An element's points on either side of its K edge, the edge's own among them.
+struct ElementCurve {
+    struct Point {
+        double log_e, log_mu;
+    };
+    int atomic_number;
+    double log_edge;
+    std::vector<Point> below, above;
+};
+
+const std::vector<ElementCurve>& element_curves() {
+    static const std::vector<ElementCurve> curves = [] {
+        std::vector<ElementCurve> out;
+        for (const ElementRow& row : element_rows()) {
+            ElementCurve curve{row.atomic_number, row.edge_kev > 0.0 ? det::log(row.edge_kev) : 0.0, {}, {}};
+            for (std::size_t k = 0; k < grid_size; ++k) {
+                const double log_e = det::log(grid_first_kev) + grid_step * static_cast<double>(k);
+                (log_e < curve.log_edge ? curve.below : curve.above).push_back({log_e, det::log(row.grid[k])});
+            }
+            if (row.edge_kev > 0.0) {
+                curve.below.push_back({curve.log_edge, det::log(row.below)});
+                curve.above.insert(curve.above.begin(), {curve.log_edge, det::log(row.above)});
+            }
+            out.push_back(std::move(curve));
+        }
+        return out;
+    }();
+    return curves;
+}
+
+double cubic(const ElementCurve& curve, double log_e) {
+    const std::vector<ElementCurve::Point>& points = log_e < curve.log_edge ? curve.below : curve.above;
+    std::size_t first = 0;
+    while (first + 4 < points.size() && log_e > points[first + 2].log_e) ++first;
+    double sum = 0.0;
+    for (std::size_t i = first; i < first + 4; ++i) {
+        double term = points[i].log_mu;
+        for (std::size_t j = first; j < first + 4; ++j)
+            if (j != i) term *= (log_e - points[j].log_e) / (points[i].log_e - points[j].log_e);
+        sum += term;
+    }
+    return det::exp(sum);
+}
+
+template <class Rows>
+const auto& row_of(const Rows& rows, int atomic_number) {
+    const auto it =
+        std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.atomic_number == atomic_number; });
+    CATHLAB_CHECK(it != rows.end(), "no attenuation data for this element");
+    return *it;
+}
+
 std::vector<Material> build_table() {
     // Compositions by mass.  Alloys and compounds follow from their formulae; tissues are ICRU's and ICRP's as compiled
     // in [schoonjans2011].
@@ -182,40 +254,21 @@ const Material& material(std::string_view name) {
                     "; known are " + comma_list(names));
 }
 
-double mass_attenuation_cm2_g(int atomic_number, double energy_kev) {
-    const ElementRow* row = nullptr;
-    for (const ElementRow& candidate : element_rows())
-        if (candidate.atomic_number == atomic_number) row = &candidate;
-    CATHLAB_CHECK(row, "no attenuation data for this element");
-    const double log_first = det::log(grid_first_kev);
-    const double log_e = std::clamp(det::log(energy_kev), log_first, det::log(150.0));
-    const auto k = std::min(static_cast<std::size_t>((log_e - log_first) / grid_step), grid_size - 2);
-    double log_low = log_first + grid_step * static_cast<double>(k), log_high = log_low + grid_step;
-    double low = row->grid[k], high = row->grid[k + 1];
-    if (row->edge_kev > 0.0) {
-        const double log_edge = det::log(row->edge_kev);
-        if (log_edge > log_low && log_edge < log_high) {
-            if (log_e < log_edge) {
-                log_high = log_edge;
-                high = row->below;
-            } else {
-                log_low = log_edge;
-                low = row->above;
-            }
-        }
-    }
-    return log_log(log_e, log_low, low, log_high, high);
+double mass_attenuation_cm2_g(int atomic_number, double energy_kev, TableReading way) {
+    const double log_e = std::clamp(det::log(energy_kev), det::log(grid_first_kev), det::log(150.0));
+    return way == TableReading::cubic ? cubic(row_of(element_curves(), atomic_number), log_e)
+                                      : straight(row_of(element_rows(), atomic_number), log_e);
 }
 
-double mass_attenuation_cm2_g(const Material& material, double energy_kev) {
+double mass_attenuation_cm2_g(const Material& material, double energy_kev, TableReading way) {
     double sum = 0.0;
     for (const MassFraction& part : material.composition)
-        sum += part.fraction * mass_attenuation_cm2_g(part.atomic_number, energy_kev);
+        sum += part.fraction * mass_attenuation_cm2_g(part.atomic_number, energy_kev, way);
     return sum;
 }
 
-double attenuation_per_mm(const Material& material, double energy_kev) {
-    return 0.1 * material.density_g_cm3 * mass_attenuation_cm2_g(material, energy_kev);
+double attenuation_per_mm(const Material& material, double energy_kev, TableReading way) {
+    return 0.1 * material.density_g_cm3 * mass_attenuation_cm2_g(material, energy_kev, way);
 }
 
 double air_energy_absorption_cm2_g(double energy_kev) {

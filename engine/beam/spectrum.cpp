@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "beam/materials.h"
 #include "core/check.h"
@@ -19,21 +20,24 @@ struct Coefficients {
     double air;                                       // energy absorption, cm2/g
 };
 
-Coefficients coefficients_at(double energy_kev) {
-    return {attenuation_per_mm(material("water"), energy_kev), attenuation_per_mm(material("aluminium"), energy_kev),
-            attenuation_per_mm(material("copper"), energy_kev),
-            attenuation_per_mm(material("caesium_iodide"), energy_kev), air_energy_absorption_cm2_g(energy_kev)};
+Coefficients coefficients_at(double energy_kev, TableReading way) {
+    const auto of = [&](const char* name) { return attenuation_per_mm(material(name), energy_kev, way); };
+    return {of("water"), of("aluminium"), of("copper"), of("caesium_iodide"), air_energy_absorption_cm2_g(energy_kev)};
 }
 
-Coefficients coefficients(double energy_kev) {
-    static const std::vector<Coefficients> table = [] {
-        std::vector<Coefficients> out;
-        for (double e = first_kev; e < 150.0; e += 1.0) out.push_back(coefficients_at(e));
-        return out;
-    }();
+std::vector<Coefficients> whole_energies(TableReading way) {
+    std::vector<Coefficients> out;
+    for (double e = first_kev; e < 150.0; e += 1.0) out.push_back(coefficients_at(e, way));
+    return out;
+}
+
+Coefficients coefficients(double energy_kev, TableReading way) {
+    static const std::vector<Coefficients> cubic = whole_energies(TableReading::cubic);
+    static const std::vector<Coefficients> straight = whole_energies(TableReading::straight);
+    const std::vector<Coefficients>& table = way == TableReading::cubic ? cubic : straight;
     const double place = energy_kev - first_kev;
     const auto k = static_cast<std::size_t>(std::max(0.0, place));
-    return place == static_cast<double>(k) && k < table.size() ? table[k] : coefficients_at(energy_kev);
+    return place == static_cast<double>(k) && k < table.size() ? table[k] : coefficients_at(energy_kev, way);
 }
 
 double water_per_mm(double energy_kev) {
@@ -66,7 +70,7 @@ std::vector<double> kerma_weights(const FineSpectrum& s) {
 
 }  // namespace
 
-FineSpectrum fine_spectrum(const SpectrumSpec& spec) {
+FineSpectrum fine_spectrum(const SpectrumSpec& spec, TableReading way) {
     CATHLAB_CHECK(spec.kvp >= 40.0 && spec.kvp <= 150.0, "tube voltage 40 to 150 kV");
     FineSpectrum out;
     double photons = 0.0, signal = 0.0, kerma = 0.0;
@@ -75,7 +79,7 @@ FineSpectrum fine_spectrum(const SpectrumSpec& spec) {
         const double top = std::min(e + 0.5, spec.kvp);
         const double width = top - (e - 0.5);
         const double middle = 0.5 * (top + e - 0.5);
-        const Coefficients mu = coefficients(middle);
+        const Coefficients mu = coefficients(middle, way);
         const double n = width * (spec.kvp / middle - 1.0) *
                          det::exp(-mu.aluminium * spec.aluminium_mm - mu.copper * spec.copper_mm);
         const double absorbed = 1.0 - det::exp(-mu.caesium_iodide * spec.caesium_iodide_mm);
@@ -96,9 +100,8 @@ FineSpectrum fine_spectrum(const SpectrumSpec& spec) {
     return out;
 }
 
-std::vector<SpectrumBin> spectrum_bins(const SpectrumSpec& spec, int count) {
+std::vector<SpectrumBin> spectrum_bins(const FineSpectrum& s, int count) {
     CATHLAB_CHECK(count >= 2 && count <= 16, "2 to 16 bins");
-    const FineSpectrum s = fine_spectrum(spec);
     const std::size_t n = s.energy_kev.size();
     std::vector<double> hardened(n);
     for (std::size_t i = 0; i < n; ++i) hardened[i] = behind(s, s.signal, i, i + 1, 100.0);
@@ -131,10 +134,33 @@ std::vector<SpectrumBin> spectrum_bins(const SpectrumSpec& spec, int count) {
         const double weight = behind(s, s.signal, cuts[b], cuts[b + 1], 0.0);
         const double through = behind(s, s.signal, cuts[b], cuts[b + 1], 200.0);
         const double per_mm = -det::log(through / weight) / 200.0;
-        bins.push_back(
-            {energy_of_water_attenuation(per_mm, s.energy_kev[cuts[b]], s.energy_kev[cuts[b + 1] - 1]), weight});
+        bins.push_back({energy_of_water_attenuation(per_mm, s.energy_kev[cuts[b]], s.energy_kev[cuts[b + 1] - 1]),
+                        weight, cuts[b], cuts[b + 1]});
     }
     return bins;
+}
+
+std::vector<double> bin_attenuation_per_mm(const FineSpectrum& spectrum, std::span<const SpectrumBin> bins,
+                                           const Material& material) {
+    const double of_water = mass_attenuation_cm2_g(cathlab::material("water"), 60.0);
+    const bool like_water = std::fabs(mass_attenuation_cm2_g(material, 60.0) / of_water - 1.0) < 0.15;
+    std::vector<double> out;
+    for (const SpectrumBin& bin : bins) {
+        std::vector<double> signal, mu;
+        double whole = 0.0, mean = 0.0;
+        for (std::size_t i = bin.first; i < bin.last; ++i) {
+            mu.push_back(attenuation_per_mm(material, spectrum.energy_kev[i]));
+            signal.push_back(like_water ? spectrum.signal[i]
+                                        : spectrum.signal[i] * det::exp(-200.0 * spectrum.water_per_mm[i]));
+            whole += signal.back();
+            mean += signal.back() * mu.back();
+        }
+        const double thickness = like_water ? 200.0 / material.density_g_cm3 : 0.5 * whole / mean;
+        double through = 0.0;
+        for (std::size_t i = 0; i < mu.size(); ++i) through += signal[i] * det::exp(-mu[i] * thickness);
+        out.push_back(-det::log(through / whole) / thickness);
+    }
+    return out;
 }
 
 double kerma_transmission(const FineSpectrum& spectrum, double water_mm) {

@@ -8,12 +8,14 @@
 namespace cathlab {
 
 BodyThickness::BodyThickness(std::span<const BodySolid> solids, double energy_kev) {
-    const double water = attenuation_per_mm(material("water"), energy_kev);
+    const auto attenuation = [&](const std::string& name) {
+        return attenuation_per_mm(material(name), energy_kev, TableReading::straight);
+    };
+    const double water = attenuation("water");
     parts_.reserve(solids.size());
     for (const BodySolid& solid : solids) {
-        const double inside = attenuation_per_mm(material(solid.material), energy_kev);
-        const double outside =
-            solid.surrounded_by.empty() ? 0.0 : attenuation_per_mm(material(solid.surrounded_by), energy_kev);
+        const double inside = attenuation(solid.material);
+        const double outside = solid.surrounded_by.empty() ? 0.0 : attenuation(solid.surrounded_by);
         Vec3 low = Vec3::Zero(), high = Vec3::Zero();
         if (!solid.mesh->vertices.empty()) low = high = solid.mesh->vertices.front();
         for (const Vec3& v : solid.mesh->vertices) {

@@ -1,9 +1,6 @@
 #include "render/attenuation.h"
 
-#include <vector>
-
 #include "beam/materials.h"
-#include "beam/spectrum.h"
 #include "core/check.h"
 #include "core/errors.h"
 
@@ -15,23 +12,21 @@ BeamTable::BeamTable(double kvp, double copper_mm) {
     SpectrumSpec spec;
     spec.kvp = kvp;
     spec.copper_mm = copper_mm;
-    const std::vector<SpectrumBin> bins = spectrum_bins(spec, static_cast<int>(energy_bins));
-    CATHLAB_CHECK(!bins.empty() && bins.size() <= energy_bins, "the beam's bins do not fit");
-    for (std::size_t k = 0; k < energy_bins; ++k) {  // bins that the beam does not use weigh nothing
-        energy_kev_[k] = k < bins.size() ? bins[k].energy_kev : bins.back().energy_kev;
-        weights_[k] = k < bins.size() ? static_cast<float>(bins[k].weight) : 0.0F;
-    }
-    photons_ = cathlab::photons_per_mm2_ngy(fine_spectrum(spec), 200.0);
+    spectrum_ = fine_spectrum(spec);
+    bins_ = spectrum_bins(spectrum_, static_cast<int>(energy_bins));
+    CATHLAB_CHECK(!bins_.empty() && bins_.size() <= energy_bins, "the beam's bins do not fit");
+    // Bins that the beam does not use weigh nothing.
+    for (std::size_t k = 0; k < bins_.size(); ++k) weights_[k] = static_cast<float>(bins_[k].weight);
+    photons_ = cathlab::photons_per_mm2_ngy(spectrum_, 200.0);
 }
 
 BinValues BeamTable::attenuation(const std::string& name) const {
+    if (name == "air") return {};
+    if (const auto it = known_.find(name); it != known_.end()) return it->second;
     BinValues mu{};
-    if (name == "air") return mu;
-    const Material& found = material(name);
-    for (std::size_t k = 0; k < energy_bins; ++k) {
-        mu[k] = static_cast<float>(attenuation_per_mm(found, energy_kev_[k]));
-    }
-    return mu;
+    const std::vector<double> per_mm = bin_attenuation_per_mm(spectrum_, bins_, material(name));
+    for (std::size_t k = 0; k < per_mm.size(); ++k) mu[k] = static_cast<float>(per_mm[k]);
+    return known_[name] = mu;
 }
 
 BinValues BeamTable::iodine() const {

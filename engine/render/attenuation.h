@@ -2,7 +2,11 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
+#include <vector>
+
+#include "beam/spectrum.h"
 
 namespace cathlab {
 
@@ -25,8 +29,10 @@ public:
     BinValues iodine() const;
 
 private:
-    std::array<double, energy_bins> energy_kev_{};
+    FineSpectrum spectrum_;
+    std::vector<SpectrumBin> bins_;
     BinValues weights_{};
+    mutable std::map<std::string, BinValues> known_;  // materials asked for so far: one table serves one thread
     double photons_ = 0;
 };
 

@@ -42,10 +42,8 @@ TEST(Thickness, NestedMediaAreDifferences) {
     const std::vector<BodySolid> solids = {{&body, "soft_tissue", ""}, {&lung, "lung", "soft_tissue"}};
     const CArmSpec spec;
     const CArmPose pose = c_arm_pose(spec, Vec3::Zero(), 0.0, 0.0);
-    const double water = attenuation_per_mm(material("water"), 60.0);
-    const double expected = (100.0 * attenuation_per_mm(material("soft_tissue"), 60.0) +
-                             100.0 * attenuation_per_mm(material("lung"), 60.0)) /
-                            water;
+    const auto mu = [](const char* name) { return attenuation_per_mm(material(name), 60.0, TableReading::straight); };
+    const double expected = (100.0 * mu("soft_tissue") + 100.0 * mu("lung")) / mu("water");
     // Four of the five rays are inclined by 40 mm in 1050.
     const double slant = (1.0 + 4.0 * std::sqrt(1.0 + std::pow(40.0 / 1050.0, 2))) / 5.0;
     EXPECT_NEAR(BodyThickness(solids).water_mm(spec, pose), expected * slant, 1e-9);
