@@ -20,7 +20,8 @@ void add_quantum_noise(ImageF& photons, std::uint64_t seed, std::uint64_t frame,
 void add_electronic_noise(ImageF& photons, double sigma, std::uint64_t seed, std::uint64_t frame,
                           const Workers& workers);
 
-/// Separable Gaussian of sigma pixels (sampled, sum 1, radius ceil(3 sigma)); edges repeat.  sigma < 0.15 does nothing.
+/// Separable Gaussian of sigma pixels: its transfer function along rows and columns is exp(-2 pi^2 sigma^2 f^2) up to
+/// the Nyquist frequency (taps of sum 1, radius max(5, ceil(3 sigma))); edges repeat.  sigma < 0.15 does nothing.
 void blur(ImageF& image, double sigma_px, const Workers& workers);
 
 /// y = (1 - b) x + b y'.  An empty or differently sized history takes x.  For independent noise the standard deviation

@@ -431,6 +431,9 @@ const std::vector<std::uint8_t>& Fluoroscope::draw(const FrameDescription& frame
 const ImageF& Fluoroscope::intensity() const {
     return impl_->intensity;
 }
+const ImageF& Fluoroscope::detected() const {
+    return impl_->signal;
+}
 std::size_t Fluoroscope::bad_pixels() const {
     return impl_->bad;
 }

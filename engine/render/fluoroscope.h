@@ -26,6 +26,8 @@ public:
 
     /// Intensity of the last frame before noise and blur, relative to the beam without a patient (scatter included).
     const ImageF& intensity() const;
+    /// What the detector read in the last frame, in detected photons a pixel: with noise and blur, before recursion.
+    const ImageF& detected() const;
     /// Rays of the last frame whose entries and exits do not match (open surfaces); must be 0.
     std::size_t bad_pixels() const;
     /// Brings the next frame to a fresh start (a new run).

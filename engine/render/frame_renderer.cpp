@@ -79,6 +79,9 @@ std::size_t FrameRenderer::bad_pixels() const {
 const ImageF& FrameRenderer::intensity() const {
     return impl_->fluoroscope.intensity();
 }
+const ImageF& FrameRenderer::detected() const {
+    return impl_->fluoroscope.detected();
+}
 void FrameRenderer::reset() {
     impl_->fluoroscope.reset();
 }

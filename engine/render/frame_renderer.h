@@ -40,6 +40,8 @@ public:
     std::size_t bad_pixels() const;
     /// Linear intensity of the last frame's fluoroscopy, before noise.
     const ImageF& intensity() const;
+    /// What the detector read in the last frame, detected photons a pixel, before recursion.
+    const ImageF& detected() const;
     /// Forgets the last frames (temporal filter, held image): the start of another run.
     void reset();
     std::string description() const;

@@ -93,10 +93,23 @@ TEST_P(PathLength, ASphereIsItsChordAndTheErrorIsSecondOrder) {
     const Vec3 center(5, -3, 8);
     const auto truth = [&](const Vec3& o, const Vec3& d) { return ball_chord(o, d, center, 40); };
     const Projection projection(v, 256, 256);
-    const double fine = errors(draw(v, {sphere(center, 40, 70)}), projection, 0.1, 80, truth).first;
-    const double coarse = errors(draw(v, {sphere(center, 40, 35)}), projection, 0.1, 80, truth).first;
-    EXPECT_LT(fine, 1e-3);
-    EXPECT_NEAR(coarse / fine, 4.0, 0.6);
+    std::vector<double> error;  // of 1,200, 4,900, 19,600 and 78,400 triangles
+    for (const int rings : {17, 35, 70, 140})
+        error.push_back(errors(draw(v, {sphere(center, 40, rings)}), projection, 0.1, 80, truth).first);
+    EXPECT_LT(error[2], 1e-3);
+    EXPECT_NEAR(error[1] / error[2], 4.0, 0.6);
+    EXPECT_NEAR(error[0] / error[2], 16.0 * std::pow(35.0 / 34.0, 2), 2.0);  // two halvings of the edges
+    EXPECT_NEAR(error[1] / error[3], 16.0, 3.0);
+}
+
+TEST_P(PathLength, ATorusIsItsChordEvenWhereARayPassesItTwice) {
+    const CArmView v = view(25, 160);
+    const Vec3 center(4, -6, 3);
+    const Projection projection(v, 256, 256);
+    const PathLengths drawn = draw(v, {torus(center, 35, 12, 320, 140)});
+    const auto truth = [&](const Vec3& o, const Vec3& d) { return torus_chord(o, d, center, 35, 12); };
+    EXPECT_LT(errors(drawn, projection, 0.1, 24, truth).first, 1e-3);
+    EXPECT_EQ(drawn.bad_pixels, 0U);
 }
 
 TEST_P(PathLength, ACylinderIsItsChord) {

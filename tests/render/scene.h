@@ -78,6 +78,26 @@ inline TriMesh cylinder(const Vec3& center, double radius, double length, int si
     return m;
 }
 
+/// Round the z axis; 2 around across triangles.
+inline TriMesh torus(const Vec3& center, double ring, double tube, int around, int across) {
+    TriMesh m;
+    for (int i = 0; i < around; ++i) {
+        for (int j = 0; j < across; ++j) {
+            const double p = 2 * units::pi * i / around, t = 2 * units::pi * j / across;
+            const double reach = ring + tube * std::cos(t);
+            m.vertices.emplace_back(center + Vec3(reach * std::cos(p), reach * std::sin(p), tube * std::sin(t)));
+        }
+    }
+    const auto id = [&](int i, int j) { return static_cast<Index>((i % around) * across + j % across); };
+    for (int i = 0; i < around; ++i) {
+        for (int j = 0; j < across; ++j) {
+            m.triangles.emplace_back(id(i, j), id(i + 1, j), id(i + 1, j + 1));
+            m.triangles.emplace_back(id(i, j), id(i + 1, j + 1), id(i, j + 1));
+        }
+    }
+    return m;
+}
+
 /// A C-arm turned by primary_deg (+ = detector to the patient's left), isocentre at the origin, SID 1200, SOD 800.
 inline CArmView view(double primary_deg, double field_mm) {
     const double a = primary_deg * units::deg;
@@ -96,6 +116,30 @@ inline double ball_chord(const Vec3& origin, const Vec3& direction, const Vec3& 
     const Vec3 rel = center - origin;
     const double off = (rel - rel.dot(direction) * direction).squaredNorm();
     return off < radius * radius ? 2 * std::sqrt(radius * radius - off) : 0.0;
+}
+
+/// Length of the line inside a torus round the z axis: the quartic's roots, bracketed in steps and bisected.
+inline double torus_chord(const Vec3& origin, const Vec3& direction, const Vec3& center, double ring, double tube) {
+    const auto outside = [&](double t) {
+        const Vec3 p = origin + t * direction - center;
+        return std::pow(std::hypot(p.x(), p.y()) - ring, 2) + p.z() * p.z() - tube * tube;
+    };
+    const double middle = (center - origin).dot(direction), reach = ring + tube + 1;
+    double length = 0, from = 0;
+    const double step = tube / 40;
+    for (double t = middle - reach; t < middle + reach; t += step) {
+        if ((outside(t) > 0) == (outside(t + step) > 0)) continue;
+        double low = t, high = t + step;
+        for (int i = 0; i < 50; ++i) {
+            const double half = 0.5 * (low + high);
+            ((outside(half) > 0) == (outside(t) > 0) ? low : high) = half;
+        }
+        if (outside(t) > 0)
+            from = low;
+        else
+            length += low - from;
+    }
+    return length;
 }
 
 }  // namespace cathlab::testing_shapes
