@@ -8,6 +8,8 @@
 namespace cathlab {
 namespace {
 
+constexpr double most_links = 4000.0;
+
 // Refuses NaN as well: every comparison with it is false.
 void need(const WireSpec& spec, const std::string& key, double value, double low, double high, const char* unit) {
     if (value >= low && value <= high) return;
@@ -52,6 +54,18 @@ void validate(const WireSpec& spec) {
         text << "wire '" << spec.name << "': length_mm = " << spec.length_mm
              << ": the sections before the last one take " << before_last
              << " mm, which leaves nothing for the last; make the wire longer or a section shorter";
+        throw UserError(text.str());
+    }
+    double links = 0.0;
+    for (std::size_t i = 0; i < spec.sections.size(); ++i) {
+        const WireSection& section = spec.sections[i];
+        const double length = i + 1 < spec.sections.size() ? section.length_mm : spec.length_mm - before_last;
+        links += std::ceil(length / (section.link_length_mm > 0.0 ? section.link_length_mm : spec.link_length_mm));
+    }
+    if (links > most_links) {
+        std::ostringstream text;
+        text << "wire '" << spec.name << "': link_length_mm = " << spec.link_length_mm << ": makes " << links
+             << " links of it, at most " << most_links << " are allowed; take longer links";
         throw UserError(text.str());
     }
     if (spec.length_mm < 4.0 * spec.link_length_mm) {

@@ -155,6 +155,13 @@ void check_insertion(const EntrySite& entry, const std::vector<Vec3>& way, const
                                           " mm long");
 }
 
+// ... and no further in than the device is long.
+void check_reach(double length_mm, const SceneDevice& device) {
+    if (device.insertion_mm >= length_mm)
+        throw UserError(device.where, "insertion_mm: found " + std::to_string(device.insertion_mm) + ", but '" +
+                                          device.device + "' is only " + std::to_string(length_mm) + " mm long");
+}
+
 void add_wire(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) {
     WireSpec wire = load_wire(spec.wire.device);
     wire.friction = spec.wall.friction;
@@ -162,6 +169,7 @@ void add_wire(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) 
     for (const WireSection& section : wire.sections) check_width(entry, 0.5 * section.diameter_mm, spec.wire);
     const std::vector<Vec3> way = way_in(anatomy, entry);
     check_insertion(entry, way, spec.wire);
+    check_reach(wire.length_mm, spec.wire);
     const SheathPose sheath{entry.pose, 60.0};
     Rod rod(wire, sheath, spec.wire.insertion_mm, way);
     world.add(world.create(wire_entity), std::move(rod));
@@ -173,6 +181,7 @@ void add_catheter(World& world, const SceneSpec& spec, const AnatomyModel& anato
     const EntrySite& entry = find_entry(anatomy, spec.catheter);
     check_width(entry, catheter.radius_mm(), spec.catheter);
     check_insertion(entry, way_in(anatomy, entry), spec.catheter);
+    check_reach(catheter.length_mm, spec.catheter);
     const Entity e = world.create(catheter_entity);
     world.add(e, CatheterMount{entry.pose, entry.node, spec.catheter.follow == "wire"});
     world.add(e, initial_state(catheter, spec.catheter.insertion_mm));
