@@ -17,6 +17,7 @@ void add_replay_command(CLI::App& app, AppContext& context);
 void add_list_command(CLI::App& app, AppContext& context);
 void add_check_command(CLI::App& app, AppContext& context);
 void add_calibrate_command(CLI::App& app, AppContext& context);
+void add_explain_command(CLI::App& app, AppContext& context);
 void add_bench_command(CLI::App& app, AppContext& context);
 /// `bench wall`, below `bench`.
 void add_bench_wall_command(CLI::App& bench);

@@ -42,6 +42,7 @@ int run_program(int argc, char** argv) {
     add_list_command(app, context);
     add_check_command(app, context);
     add_calibrate_command(app, context);
+    add_explain_command(app, context);
     add_bench_command(app, context);
     try {
         app.parse(argc, argv);

@@ -1,5 +1,6 @@
 #include "effects/effect.h"
 
+#include <algorithm>
 #include <array>
 
 namespace cathlab {
@@ -18,13 +19,22 @@ std::span<const EffectInfo> effect_table() {
 }
 
 const EffectInfo* find_effect(std::string_view name) {
+    std::string key(name);
+    std::replace(key.begin(), key.end(), '-', '_');
     for (const EffectInfo& info : effect_table())
-        if (info.name == name) return &info;
+        if (info.name == key) return &info;
     return nullptr;
 }
 
+std::string spoken_name(const EffectInfo& info) {
+    std::string out(info.name);
+    std::replace(out.begin(), out.end(), '_', '-');
+    return out;
+}
+
 std::vector<std::string_view> hook_names(unsigned hooks) {
-    constexpr std::array<std::string_view, 6> names{"input", "drive", "material", "constraint", "force", "measure"};
+    constexpr std::array<std::string_view, 7> names{"input", "drive",   "material", "constraint",
+                                                    "force", "measure", "actuation"};
     std::vector<std::string_view> out;
     for (std::size_t i = 0; i < names.size(); ++i)
         if ((hooks >> i) & 1U) out.push_back(names[i]);

@@ -3,6 +3,7 @@
 //
 // Hooks, in the order in which a step calls them:
 //   input       between the operator's command and the device
+//   actuation   between the catheter's drive and its shape: cables, shaft, friction
 //   drive       moves supports and the heart
 //   material    constitutive: scales the wall's stiffness, particle by particle
 //   constraint  anchors that the solver owns and evaluates inside its solve (never an explicit stiff force)
@@ -13,6 +14,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -34,6 +36,32 @@ struct EffectContext {
     std::span<const Vec3> wall_position;       ///< (n) where they are now
     std::span<const double> wall_mass;         ///< (n) kg
     std::span<const std::uint8_t> wall_fixed;  ///< (n) 1 = moves with the supports
+    double heart_phase = 0.0;                  ///< of the beat at the beginning of the (sub)step, [0, 1)
+    std::int64_t heart_beats = 0;              ///< beats completed since the start
+    double heart_beat_s = 0.0;                 ///< usual length of a beat; 0 = there is no heart, or none is recorded
+    /// Where beats were recorded: how long the one before this one took, in usual beats.  0 = the heart's own clock
+    /// runs, and an effect may change it.
+    double heart_interval = 0.0;
+};
+
+/// One segment of a steerable device as its drive bends it.
+struct ActuatedSegment {
+    double length_mm = 0.0;
+    Vec2 bend_rad = Vec2::Zero();  ///< angle between its ends, towards x and y of the device's base frame
+    double tendon_radius_mm = 0.0;
+    std::vector<double> tendon_rad, tendon_mm;  ///< (tendons) place around the axis; length pulled at the drive
+};
+
+/// `actuation`: what drive, cables and shaft make of a command.  The hook is given what was commanded and leaves what
+/// the device does.
+struct Actuation {
+    double insertion_mm = 0.0;              ///< of the base
+    double rotation_rad = 0.0;              ///< of the base about its own axis
+    std::vector<ActuatedSegment> segments;  ///< base first
+    double link_length_mm = 0.0;            ///< straight, between neighbouring segments
+    double tip_length_mm = 0.0;             ///< straight, after the last segment
+    Vec3 down = Vec3::Zero();  ///< direction of gravity in the frame of the base (which turns with the rotation);
+                               ///< zero = not known
 };
 
 /// `drive`: where the supports go and how the heart is paced.
@@ -42,6 +70,8 @@ struct Drive {
     std::vector<Vec3> support_displacement;
     double heart_rate_scale = 1.0;
     double heart_displacement_mm = 0.0;  ///< added to the cylinder's displacement
+    /// Of the beat's own displacement, counted from where the heart stands when a beat begins.
+    double heart_amplitude_scale = 1.0;
 };
 
 /// `constraint`: a linear spring from one particle to a target, taken implicitly inside the solve.
@@ -55,6 +85,7 @@ class Effect {
 public:
     virtual ~Effect() = default;
     virtual void input(const EffectContext& /*context*/, Input& /*input*/) {}
+    virtual void actuation(const EffectContext& /*context*/, Actuation& /*actuation*/) {}
     virtual void drive(const EffectContext& /*context*/, Drive& /*drive*/) {}
     virtual void material(const EffectContext& /*context*/, std::span<double> /*stiffness_scale: (n), 1 = as built*/) {}
     virtual void constraint(const EffectContext& /*context*/, std::vector<WallAnchor>& /*anchors*/) {}
@@ -71,6 +102,7 @@ enum Hook : unsigned {
     hook_constraint = 8U,
     hook_force = 16U,
     hook_measure = 32U,
+    hook_actuation = 64U,
 };
 
 struct EffectInfo {
@@ -81,14 +113,20 @@ struct EffectInfo {
     bool for_tests = false;   ///< true: proves a hook; not offered to calibrator, tracer or `cathlab list`
     std::vector<std::string_view> applies_to;  ///< kinds of measured data that may show it
     std::vector<Parameter> parameters;
+    /// Parameters that say how strong it is: with all of them 0 it does nothing, to the bit.
+    std::vector<std::string_view> strengths = {};
     std::unique_ptr<Effect> (*make)(std::span<const double> values) = nullptr;  ///< values in the order of `parameters`
 };
 
 /// All effects, in the order of effects.inl.
 std::span<const EffectInfo> effect_table();
 
-/// nullptr where there is none of that name.
+/// nullptr where there is none of that name.  Hyphens count as underscores: data sets write `actuation-lag`, scenes
+/// and files `actuation_lag`.
 const EffectInfo* find_effect(std::string_view name);
+
+/// The name as data sets and reports write it: with hyphens.
+std::string spoken_name(const EffectInfo& info);
 
 /// "input, drive" for lists and docs.
 std::vector<std::string_view> hook_names(unsigned hooks);

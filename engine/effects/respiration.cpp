@@ -1,8 +1,8 @@
 // Breathing moves what the vessels hang on.  Displacement of a support at height z:
-//     u(z, t) = a w(z) sin^4(pi t / T) d,
-// the asymmetric breathing curve of Lujan et al. (1999) with n = 2, which dwells at end-expiration, and time counted
-// from there; w falls from 1 at and above the diaphragm's height to 0 at the pelvis, because bone holds the iliac
-// arteries.
+//     u(z, t) = a w(z) sin^(2 n)(pi s(t / T)) d,
+// the breathing curve of Lujan et al. (1999), which dwells at end-expiration the longer the larger n is, and time
+// counted from there; w falls from 1 at and above the diaphragm's height to 0 at the pelvis, because bone holds the
+// iliac arteries.
 #include <cmath>
 
 #include "core/deterministic_math.h"
@@ -15,14 +15,27 @@ namespace {
 class Respiration final : public Effect {
 public:
     explicit Respiration(std::span<const double> p)
-        : amplitude_(p[0]), period_(p[1]), phase_(p[2]), direction_(p[3], p[4], p[5]), upper_(p[6]), lower_(p[7]) {
+        : amplitude_(p[0]),
+          period_(p[1]),
+          phase_(p[2]),
+          direction_(p[3], p[4], p[5]),
+          upper_(p[6]),
+          lower_(p[7]),
+          dwell_(p[8]),
+          inspiration_(p[9]) {
         const double n = std::sqrt(direction_.squaredNorm());
         direction_ = n > 0.0 ? Vec3(direction_ / n) : Vec3(0.0, 0.0, -1.0);
     }
 
     void drive(const EffectContext& context, Drive& drive) override {
-        const double s = det::sin(units::pi * ((context.time_s + context.dt) / period_ + phase_));
-        const double breath = amplitude_ * s * s * s * s;
+        double place = (context.time_s + context.dt) / period_ + phase_;
+        if (inspiration_ != 0.5) {
+            place -= std::floor(place);
+            place = place < inspiration_ ? 0.5 * place / inspiration_
+                                         : 0.5 + 0.5 * (place - inspiration_) / (1.0 - inspiration_);
+        }
+        const double s = det::sin(units::pi * place);
+        const double breath = amplitude_ * (dwell_ == 2.0 ? s * s * s * s : det::pow(s * s, dwell_));
         for (std::size_t i = 0; i < drive.support_displacement.size(); ++i) {
             const double z = context.wall_rest[i].z();
             double w = upper_ > lower_ ? (z - lower_) / (upper_ - lower_) : 1.0;
@@ -34,7 +47,7 @@ public:
 private:
     double amplitude_, period_, phase_;
     Vec3 direction_;
-    double upper_, lower_;
+    double upper_, lower_, dwell_, inspiration_;
 };
 
 }  // namespace
@@ -50,14 +63,17 @@ EffectInfo respiration_effect() {
         .parameters =
             {
                 {"amplitude_mm", "mm", 6.0, 0.0, 40.0, "displacement at end-inspiration above the diaphragm"},
-                {"period_s", "s", 4.0, 0.5, 30.0, "one breath"},
+                {"period_s", "s", 4.0, 1.2, 15.0, "one breath: 4 to 50 a minute"},
                 {"phase", "1", 0.0, 0.0, 1.0, "phase of the breath at time 0; 0 = end-expiration"},
                 {"direction_x", "1", 0.0, -1.0, 1.0, "direction at inspiration, patient's left"},
                 {"direction_y", "1", -0.3, -1.0, 1.0, "direction at inspiration, posterior"},
                 {"direction_z", "1", -0.95, -1.0, 1.0, "direction at inspiration, cranial"},
                 {"upper_z_mm", "mm", -100.0, -2000.0, 2000.0, "height from which on the supports move in full"},
                 {"lower_z_mm", "mm", -300.0, -2000.0, 2000.0, "height below which they stand still"},
+                {"dwell", "1", 2.0, 1.0, 4.0, "n: 1 = a sine, 2 = rests at end-expiration, more = rests longer"},
+                {"inspiration", "1", 0.5, 0.2, 0.8, "part of a breath that inspiration takes"},
             },
+        .strengths = {"amplitude_mm"},
         .make = [](std::span<const double> p) -> std::unique_ptr<Effect> { return std::make_unique<Respiration>(p); },
     };
 }

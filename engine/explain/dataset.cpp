@@ -40,6 +40,29 @@ WallTensionSetup wall_setup(const TomlNode& setup) {
     return out;
 }
 
+/// The columns that the setup names as tendons become inputs.
+void find_tendons(const std::string& file, Dataset& out) {
+    for (TendonSegmentSetup& segment : out.tendons.segments)
+        for (const std::string& name : segment.tendons) {
+            const auto it = std::find_if(out.columns.begin(), out.columns.end(),
+                                         [&](const DataColumn& column) { return column.name == name; });
+            if (it == out.columns.end()) {
+                std::vector<std::string> names;
+                for (const DataColumn& column : out.columns) names.push_back(column.name);
+                throw UserError({file, 0, "setup.segment '" + segment.name + "'"},
+                                "data.csv has no column '" + name + "'" + did_you_mean(name, names));
+            }
+            if (it->unit != "mm")
+                throw UserError({file, 0, "setup.segment '" + segment.name + "'"},
+                                "the column '" + name + "' is no length; one in _mm or _m is wanted");
+            if (it->role == ColumnRole::measured)
+                throw UserError({file, 0, "setup.segment '" + segment.name + "'"},
+                                "the column '" + name + "' is measured and cannot be a tendon");
+            it->role = ColumnRole::input;
+            segment.columns.push_back(static_cast<std::size_t>(it - out.columns.begin()));
+        }
+}
+
 void read_description(const fs::path& file, Dataset& out) {
     const TomlNode toml = load_toml(file.string());
     refuse_unknown(toml, {"format", "kind", "title", "source", "license", "declared_effects", "sensor_noise", "setup"});
@@ -64,6 +87,8 @@ void read_description(const fs::path& file, Dataset& out) {
     if (out.sensor_noise < 0.0)
         throw UserError(noise.place("sensor_noise"), "found " + noise.describe() + "; 0 or more is wanted");
     const TomlNode& setup = described(toml, "setup", TomlKind::table, "a section [setup]");
+    if (out.kind == "catheter-tip") out.catheter = catheter_setup(setup);
+    if (out.kind == "tendon-tip") out.tendons = tendon_setup(setup);
     if (out.kind == "heart-motion") out.heart = heart_setup(setup);
     if (out.kind == "wall-tension") out.wall = wall_setup(setup);
     if (out.kind == "wall-contact") out.contact = contact_setup(setup, file.parent_path().string());
@@ -92,6 +117,7 @@ Dataset read_dataset(const std::string& folder) {
         throw UserError(folder + ": is no folder; a data set is one with dataset.toml and data.csv");
     read_description(path / "dataset.toml", out);
     read_data_csv((path / "data.csv").string(), out);
+    if (out.kind == "tendon-tip") find_tendons((path / "dataset.toml").string(), out);
     if (!out.heart.beat_times_s.empty() && out.heart.beat_times_s.size() != out.run_names.size())
         throw UserError({(path / "dataset.toml").string(), 0, "setup.beat_times_s"},
                         "found " + std::to_string(out.heart.beat_times_s.size()) + " lists for " +

@@ -36,6 +36,24 @@ struct HeartMotionSetup {
     std::optional<Vec3> axis;                       ///< unit
 };
 
+struct CatheterTipSetup {
+    double proximal_length_mm = 0.0, middle_length_mm = 0.0, distal_length_mm = 0.0, tip_length_mm = 0.0;
+    Pose base;                 ///< world: z = direction of insertion, x = towards which a positive bend goes
+    std::optional<Vec3> down;  ///< unit, direction of gravity; nothing = not known
+};
+
+struct TendonSegmentSetup {
+    std::string name;
+    double length_mm = 0.0;
+    std::vector<std::string> tendons;  ///< names of columns, equally spaced around
+    std::vector<std::size_t> columns;  ///< the same as indices into Dataset::columns
+};
+
+struct TendonTipSetup {
+    double tendon_radius_mm = 0.0;
+    std::vector<TendonSegmentSetup> segments;  ///< base first
+};
+
 struct WallTensionSetup {
     std::string specimen, mode;  ///< empty = not said
     double thickness_mm = 0.0;
@@ -62,6 +80,8 @@ struct Dataset {
     std::string folder, kind, title, source, license;
     std::vector<std::string> declared_effects;
     double sensor_noise = 0.0;  ///< root mean square a measured column, in the column's unit; 0 = not known
+    CatheterTipSetup catheter;  ///< filled for kind catheter-tip
+    TendonTipSetup tendons;     ///< filled for kind tendon-tip
     HeartMotionSetup heart;     ///< filled for kind heart-motion
     WallTensionSetup wall;      ///< filled for kind wall-tension
     WallContactSetup contact;   ///< filled for kind wall-contact
@@ -80,8 +100,7 @@ struct Dataset {
 
 /// Reads the folder.  Throws UserError with file, line and column for whatever is not as the format says: a missing or
 /// unknown key, a missing column, a cell that is no number, an infinity, time that does not rise, fewer than eight
-/// rows. Kinds whose rig this program cannot be yet (see base_model.h) are read for their columns; their [setup] is
-/// left alone.
+/// rows.
 Dataset read_dataset(const std::string& folder);
 
 /// The kinds of data of the format.

@@ -35,6 +35,13 @@ double described_above_zero(const TomlNode& table, const std::string& key) {
     return value;
 }
 
+double described_not_below_zero(const TomlNode& table, const std::string& key) {
+    const TomlNode& node = described(table, key, TomlKind::number, "a number, 0 or more,");
+    const double value = described_number(node, key);
+    if (value < 0.0) throw UserError(node.place(key), "found " + node.describe() + "; 0 or more is wanted");
+    return value;
+}
+
 Vec3 described_vector(const TomlNode& node, const std::string& key) {
     if (node.kind != TomlKind::array || node.items.size() != 3)
         throw UserError(node.place(key), "found " + node.describe() + "; three numbers are wanted");
@@ -67,6 +74,64 @@ HeldPlace held_place(const TomlNode& disc) {
 }
 
 }  // namespace
+
+CatheterTipSetup catheter_setup(const TomlNode& setup) {
+    refuse_unknown(setup, {"proximal_length_mm", "middle_length_mm", "distal_length_mm", "tip_length_mm",
+                           "base_position_mm", "base_axis", "bend_plane_axis", "down_axis"});
+    CatheterTipSetup out;
+    out.proximal_length_mm = described_above_zero(setup, "proximal_length_mm");
+    out.middle_length_mm = described_not_below_zero(setup, "middle_length_mm");
+    out.distal_length_mm = described_above_zero(setup, "distal_length_mm");
+    out.tip_length_mm = described_not_below_zero(setup, "tip_length_mm");
+    const auto vector = [&](const char* key) -> const TomlNode& {
+        return described(setup, key, TomlKind::array, "three numbers");
+    };
+    out.base.position = described_vector(vector("base_position_mm"), "base_position_mm");
+    const Vec3 z = described_direction(vector("base_axis"), "base_axis");
+    const TomlNode& plane = vector("bend_plane_axis");
+    Vec3 x = described_direction(plane, "bend_plane_axis");
+    constexpr double square = 0.02;  // what rounding leaves of a right angle; more is a mistake
+    if (std::fabs(x.dot(z)) > square) throw UserError(plane.place("bend_plane_axis"), "is not square to base_axis");
+    x = (x - x.dot(z) * z).normalized();
+    Mat3 frame;
+    frame.col(0) = x;
+    frame.col(1) = z.cross(x);
+    frame.col(2) = z;
+    out.base.orientation = Quat(frame).normalized();
+    if (const TomlNode* down = setup.find("down_axis")) out.down = described_direction(*down, "down_axis");
+    return out;
+}
+
+TendonTipSetup tendon_setup(const TomlNode& setup) {
+    refuse_unknown(setup, {"tendon_radius_mm", "segment"});
+    TendonTipSetup out;
+    out.tendon_radius_mm = described_above_zero(setup, "tendon_radius_mm");
+    const TomlNode& list = described(setup, "segment", TomlKind::array, "sections [[setup.segment]]");
+    if (list.items.empty()) throw UserError(list.place("segment"), "is empty; a segment or more is wanted");
+    std::vector<std::string> taken;
+    for (const TomlNode& item : list.items) {
+        if (item.kind != TomlKind::table)
+            throw UserError(item.place("segment"), "found " + item.describe() + "; a section is wanted");
+        refuse_unknown(item, {"name", "length_mm", "tendons"});
+        TendonSegmentSetup segment;
+        segment.name = described(item, "name", TomlKind::text, "a text").text;
+        segment.length_mm = described_above_zero(item, "length_mm");
+        const TomlNode& tendons = described(item, "tendons", TomlKind::array, "a list of columns");
+        for (const TomlNode& tendon : tendons.items) {
+            if (tendon.kind != TomlKind::text)
+                throw UserError(tendon.place("tendons"), "found " + tendon.describe() + "; a column's name is wanted");
+            if (std::find(taken.begin(), taken.end(), tendon.text) != taken.end())
+                throw UserError(tendon.place("tendons"), "the column '" + tendon.text + "' is named twice");
+            taken.push_back(tendon.text);
+            segment.tendons.push_back(tendon.text);
+        }
+        if (segment.tendons.size() < 2)
+            throw UserError(tendons.place("tendons"),
+                            "names " + std::to_string(segment.tendons.size()) + " columns; two or more are wanted");
+        out.segments.push_back(std::move(segment));
+    }
+    return out;
+}
 
 WallContactSetup contact_setup(const TomlNode& setup, const std::string& folder) {
     refuse_unknown(setup, {"mesh", "tube", "axis", "thickness_mm", "tool_radius_mm", "sensor_rest_mm", "material",

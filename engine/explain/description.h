@@ -25,6 +25,14 @@ Vec3 described_direction(const TomlNode& node, const std::string& key);
 /// Throws UserError for a key that is not among the known ones, with the nearest of them.
 void refuse_unknown(const TomlNode& table, const std::vector<std::string>& known);
 
+/// A number, 0 or more; throws UserError.
+double described_not_below_zero(const TomlNode& table, const std::string& key);
+
+/// [setup] of kind catheter-tip.
+CatheterTipSetup catheter_setup(const TomlNode& setup);
+/// [setup] of kind tendon-tip; the columns are found later, by find_tendons.
+TendonTipSetup tendon_setup(const TomlNode& setup);
+
 /// [setup] of kind wall-contact; `folder` is where its mesh lies.
 WallContactSetup contact_setup(const TomlNode& setup, const std::string& folder);
 

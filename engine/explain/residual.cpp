@@ -74,65 +74,130 @@ double outlier_part(std::span<const double> values) {
     return static_cast<double>(count) / static_cast<double>(known.size());
 }
 
-SpectrumPeak highest_peak(std::span<const double> time_s, std::span<const double> values, std::span<const Index> run) {
+namespace {
+
+/// Values without gaps, their mean taken away, and the range of periods that they can show.
+struct Signal {
+    std::vector<double> t, v;
+    std::vector<std::size_t> ends;  // of the parts that have a phase of their own
+    double shortest = 0.0, longest = 0.0, variance = 0.0;
+    bool usable = false;
+};
+
+Signal signal_of(std::span<const double> time_s, std::span<const double> values, std::span<const Index> run) {
     CATHLAB_CHECK(time_s.size() == values.size() && run.size() == values.size(), "one time and run a value");
-    std::vector<double> t, v, steps;
-    double shortest = 0.0, longest = 0.0, first = 0.0;
+    Signal out;
+    std::vector<double> steps;
+    double first = 0.0;
     for (std::size_t i = 0; i < values.size(); ++i) {
-        if (i == 0 || run[i] != run[i - 1])
+        if (i == 0 || run[i] != run[i - 1]) {
             first = time_s[i];
-        else
+            if (i > 0) out.ends.push_back(out.v.size());
+        } else {
             steps.push_back(time_s[i] - time_s[i - 1]);
-        longest = std::max(longest, time_s[i] - first);
+        }
+        out.longest = std::max(out.longest, time_s[i] - first);
         if (std::isnan(values[i])) continue;
-        t.push_back(time_s[i]);
-        v.push_back(values[i]);
+        out.t.push_back(time_s[i]);
+        out.v.push_back(values[i]);
     }
-    if (v.size() < 8 || steps.empty() || longest <= 0.0) return {};
-    shortest = 2.0 * median_of(steps);
-    double mean = 0.0;
-    for (const double x : v) mean += x / static_cast<double>(v.size());
-    double variance = 0.0;
-    for (double& x : v) {
-        x -= mean;
-        variance += x * x;
+    if (out.v.size() < 8 || steps.empty() || out.longest <= 0.0) return out;
+    out.shortest = 2.0 * median_of(steps);
+    out.ends.push_back(out.v.size());
+    constexpr std::size_t rows_a_part = 40;
+    if (out.v.size() < rows_a_part * out.ends.size()) out.ends = {out.v.size()};
+    std::size_t begin = 0;
+    for (const std::size_t end : out.ends) {
+        double mean = 0.0;
+        for (std::size_t i = begin; i < end; ++i) mean += out.v[i] / static_cast<double>(end - begin);
+        for (std::size_t i = begin; i < end; ++i) {
+            out.v[i] -= mean;
+            out.variance += out.v[i] * out.v[i];
+        }
+        begin = end;
     }
-    if (variance <= 0.0 || shortest <= 0.0 || shortest >= longest) return {};
+    out.usable = out.variance > 0.0 && out.shortest > 0.0 && out.shortest < out.longest;
+    return out;
+}
+
+}  // namespace
+
+std::vector<SpectrumPeak> highest_peaks(std::span<const double> time_s, std::span<const double> values,
+                                        std::span<const Index> run, double shortest_s, double longest_s,
+                                        std::size_t count) {
+    const Signal signal = signal_of(time_s, values, run);
+    if (!signal.usable) return {};
+    const double shortest = std::max(signal.shortest, shortest_s), longest = std::min(signal.longest, longest_s);
+    if (shortest >= longest) return {};
     // Four frequencies a width of the peak; never so many that the sums take long.
-    const double step_hz = std::max(0.25 / longest, (1.0 / shortest - 1.0 / longest) / 20000.0);
-    SpectrumPeak best;
-    double independent = 0.0;
-    const int last = static_cast<int>((1.0 / shortest - 1.0 / longest) / step_hz);
-    for (int k = 0; k <= last; ++k) {
-        const double f = 1.0 / longest + k * step_hz;
-        const double w = 2.0 * units::pi * f;
-        double s2 = 0.0, c2 = 0.0;
-        for (const double x : t) {
-            s2 += std::sin(2.0 * w * x);
-            c2 += std::cos(2.0 * w * x);
-        }
-        const double shift = 0.5 * std::atan2(s2, c2);
-        double c = 0.0, s = 0.0, cc = 0.0, ss = 0.0;
-        for (std::size_t i = 0; i < t.size(); ++i) {
-            const double a = w * t[i] - shift;
-            const double cosine = std::cos(a), sine = std::sin(a);
-            c += v[i] * cosine;
-            s += v[i] * sine;
-            cc += cosine * cosine;
-            ss += sine * sine;
-        }
-        const double power = (cc > 1e-9 ? c * c / cc : 0.0) + (ss > 1e-9 ? s * s / ss : 0.0);
-        if (power / variance > best.explained) {
-            best.explained = power / variance;
-            best.period_s = 1.0 / f;
-            best.amplitude = std::hypot(cc > 1e-9 ? c / cc : 0.0, ss > 1e-9 ? s / ss : 0.0);
-        }
-        independent += step_hz * longest;
+    const double step_hz = std::max(0.25 / signal.longest, (1.0 / shortest - 1.0 / longest) / 20000.0);
+    const std::size_t n = signal.t.size();
+    // The sine and cosine of every row turn from frequency to frequency by the same angle.
+    std::vector<double> c(n), s(n), dc(n), ds(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const double w = 2.0 * units::pi * signal.t[i];
+        c[i] = std::cos(w / longest);
+        s[i] = std::sin(w / longest);
+        dc[i] = std::cos(w * step_hz);
+        ds[i] = std::sin(w * step_hz);
     }
-    // Normalised power z = part * n / 2 is exponential for white noise (Scargle 1982, eq. 14, 22).
-    const double z = 0.5 * best.explained * static_cast<double>(v.size());
-    best.false_alarm = -std::expm1(independent * std::log1p(-std::exp(-z)));
-    return best;
+    const int last = static_cast<int>((1.0 / shortest - 1.0 / longest) / step_hz);
+    std::vector<SpectrumPeak> spectrum;
+    for (int k = 0; k <= last; ++k) {
+        SpectrumPeak here;
+        here.period_s = 1.0 / (1.0 / longest + k * step_hz);
+        std::size_t i = 0;
+        for (const std::size_t end : signal.ends) {
+            const std::size_t begin = i;
+            double vc = 0.0, vs = 0.0, cc = 0.0, ss = 0.0, cs = 0.0;
+            for (; i < end; ++i) {
+                vc += signal.v[i] * c[i];
+                vs += signal.v[i] * s[i];
+                cc += c[i] * c[i];
+                ss += s[i] * s[i];
+                cs += c[i] * s[i];
+                const double next = c[i] * dc[i] - s[i] * ds[i];
+                s[i] = s[i] * dc[i] + c[i] * ds[i];
+                c[i] = next;
+            }
+            // The least squares of a cosine and a sine: the same height as Lomb's with his shift.
+            const double d = cc * ss - cs * cs;
+            if (d > 1e-9 * cc * ss + 1e-300) {
+                const double a = (vc * ss - vs * cs) / d, b = (vs * cc - vc * cs) / d;
+                here.explained += (a * vc + b * vs) / signal.variance;
+                here.amplitude += (a * a + b * b) * static_cast<double>(end - begin) / static_cast<double>(n);
+            }
+        }
+        here.amplitude = std::sqrt(here.amplitude);
+        spectrum.push_back(here);
+    }
+    std::vector<SpectrumPeak> out;
+    for (std::size_t k = 0; k < spectrum.size(); ++k) {
+        const bool rises = k == 0 || spectrum[k].explained >= spectrum[k - 1].explained;
+        const bool falls = k + 1 == spectrum.size() || spectrum[k].explained > spectrum[k + 1].explained;
+        if (rises && falls) out.push_back(spectrum[k]);
+    }
+    std::sort(out.begin(), out.end(),
+              [](const SpectrumPeak& a, const SpectrumPeak& b) { return a.explained > b.explained; });
+    if (out.size() > count) out.resize(count);
+    const double independent = std::max(1.0, static_cast<double>(last + 1) * step_hz * signal.longest);
+    for (SpectrumPeak& peak : out) {
+        // Normalised power z = part * n / 2 is exponential for white noise (Scargle 1982, eq. 14, 22); the sum of that
+        // of several parts has the tail exp(-z) sum_k z^k / k!.
+        const double z = 0.5 * peak.explained * static_cast<double>(n);
+        double tail = 0.0, term = std::exp(-z);
+        for (std::size_t part = 1; part <= signal.ends.size(); ++part) {
+            tail += term;
+            term *= z / static_cast<double>(part);
+        }
+        peak.false_alarm = -std::expm1(independent * std::log1p(-std::min(tail, 1.0 - 1e-12)));
+    }
+    return out;
+}
+
+SpectrumPeak highest_peak(std::span<const double> time_s, std::span<const double> values, std::span<const Index> run) {
+    const auto peaks = highest_peaks(time_s, values, run, 0.0, std::numeric_limits<double>::infinity(), std::size_t{1});
+    return peaks.empty() ? SpectrumPeak{} : peaks[0];
 }
 
 }  // namespace cathlab

@@ -30,6 +30,11 @@ struct SpectrumPeak {
     double false_alarm = 1.0;  ///< chance that white noise has a peak as high somewhere in the range
 };
 
+/// The highest peaks (at most `count`, highest first) between two periods; see highest_peak.
+std::vector<SpectrumPeak> highest_peaks(std::span<const double> time_s, std::span<const double> values,
+                                        std::span<const Index> run, double shortest_s, double longest_s,
+                                        std::size_t count);
+
 /// The highest peak of the Lomb and Scargle periodogram [lomb1976, scargle1982] with mean taken away: rows need not be
 /// even.  Periods from twice the median step to the longest run.  period_s = 0 where there is too little data.
 SpectrumPeak highest_peak(std::span<const double> time_s, std::span<const double> values, std::span<const Index> run);

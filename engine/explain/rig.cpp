@@ -1,75 +1,122 @@
 #include "explain/rig.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+
+#include "core/errors.h"
+#include "explain/residual.h"
+#include "explain/rigs.h"
 
 namespace cathlab {
 namespace {
 
-Vec3 axis_of(const Dataset& data) {
-    return data.heart.axis.value_or(Vec3::UnitZ());
-}
+// The particle that stands for the device's or the sensor's support.  Its height is one at which a breath acts in full.
+const std::array<Vec3, 1> support_place{Vec3::Zero()};
+const std::array<double, 1> support_mass{1e-6};
+const std::array<std::uint8_t, 1> support_held{1};
 
 }  // namespace
 
-std::optional<std::string> why_not_tried(const EffectInfo& effect, const Dataset& data) {
-    if (data.kind != "heart-motion") return "there is no rig yet for data of kind '" + data.kind + "'";
-    if ((effect.hooks & ~(hook_drive | hook_measure)) != 0)
-        return "the rig of heart-motion has no wall for the hooks of '" + std::string(effect.name) + "' to act on";
-    return std::nullopt;
+std::size_t phase_place(const EffectInfo& effect) {
+    const auto it = std::find_if(effect.parameters.begin(), effect.parameters.end(),
+                                 [](const Parameter& p) { return p.key == "phase"; });
+    return static_cast<std::size_t>(it - effect.parameters.begin());
 }
 
-std::vector<std::vector<double>> effect_on_rig(const EffectInfo& effect, std::span<const double> values,
-                                               const Dataset& data) {
-    const auto measured = data.of_role(ColumnRole::measured);
-    const std::unique_ptr<Effect> made = effect.make(values);
-    const Vec3 axis = axis_of(data);
-    const std::vector<Vec3> sensor{Vec3::Zero()};
-    const std::vector<double> mass{1e-6};
-    const std::vector<std::uint8_t> held{1};
-    std::vector<std::vector<double>> out(measured.size(), std::vector<double>(data.rows(), 0.0));
+RigEffects::RigEffects(std::span<const EffectTrial> trials) : trials_(trials) {
+    context_.wall_rest = support_place;
+    context_.wall_position = support_place;
+    context_.wall_mass = support_mass;
+    context_.wall_fixed = support_held;
+}
+
+void RigEffects::begin_run(Index run) {
+    made_.clear();
+    for (const EffectTrial& trial : trials_) {
+        if (trial.phase_of_run.empty()) {
+            made_.push_back(trial.effect->make(trial.values));
+            continue;
+        }
+        std::vector<double> values = trial.values;
+        double& phase = values[phase_place(*trial.effect)];
+        phase += trial.phase_of_run[static_cast<std::size_t>(run)];
+        phase -= std::floor(phase);
+        made_.push_back(trial.effect->make(values));
+    }
+    context_.step = -1;
+    first_ = true;
+}
+
+void RigEffects::next_row(double time_s) {
+    context_.dt = first_ ? 0.0 : time_s - last_s_;
+    context_.time_s = time_s - context_.dt;
+    ++context_.step;
+    first_ = false;
+    last_s_ = time_s;
+}
+
+void RigEffects::actuation(Actuation& act) {
+    for (std::size_t k = 0; k < made_.size(); ++k)
+        if ((trials_[k].effect->hooks & hook_actuation) != 0) made_[k]->actuation(context_, act);
+}
+
+Drive RigEffects::drive() {
     Drive drive;
-    for (std::size_t i = 0; i < data.rows(); ++i) {
-        EffectContext context;
-        context.dt = 0.02;
-        context.time_s = data.time_s[i] - context.dt;  // drive() looks at the end of the step
-        context.step = static_cast<std::int64_t>(i);
-        context.wall_rest = context.wall_position = sensor;
-        context.wall_mass = mass;
-        context.wall_fixed = held;
-        drive.support_displacement.assign(1, Vec3::Zero());
-        drive.heart_displacement_mm = 0.0;
-        if ((effect.hooks & hook_drive) != 0) made->drive(context, drive);
-        const Vec3 moved = drive.support_displacement[0] + drive.heart_displacement_mm * axis;
-        Channels channels;
-        channels.annulus_displacement_mm = moved.dot(axis);
-        if ((effect.hooks & hook_measure) != 0) made->measure(context, channels);
-        const Vec3 seen = moved + (channels.annulus_displacement_mm - moved.dot(axis)) * axis;
-        for (std::size_t c = 0; c < measured.size(); ++c) {
-            const std::string& quantity = measured[c]->quantity;
-            out[c][i] = quantity == "displacement" ? seen.dot(axis) : seen[quantity[0] - 'x'];
-        }
-    }
-    return out;
+    drive.support_displacement.assign(1, Vec3::Zero());
+    for (std::size_t k = 0; k < made_.size(); ++k)
+        if ((trials_[k].effect->hooks & hook_drive) != 0) made_[k]->drive(context_, drive);
+    return drive;
 }
 
-std::vector<bool> identifiable(const EffectInfo& effect, const Dataset& data) {
-    std::vector<double> values;
-    for (const Parameter& p : effect.parameters) values.push_back(p.default_value);
-    const auto usual = effect_on_rig(effect, values, data);
-    std::vector<bool> out;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-        const Parameter& p = effect.parameters[k];
-        bool matters = false;
-        // A parameter that changes nothing at two other places of its range has nothing to say here.
-        for (const double part : {0.13, 0.71}) {
-            std::vector<double> other = values;
-            other[k] = p.default_value + part * ((part < 0.5 ? p.minimum : p.maximum) - p.default_value);
-            matters = matters || effect_on_rig(effect, other, data) != usual;
-        }
-        out.push_back(matters);
+void RigEffects::measure(Channels& channels) {
+    for (std::size_t k = 0; k < made_.size(); ++k)
+        if ((trials_[k].effect->hooks & hook_measure) != 0) made_[k]->measure(context_, channels);
+}
+
+bool RigEffects::uses(unsigned hooks) const {
+    return std::any_of(trials_.begin(), trials_.end(),
+                       [&](const EffectTrial& trial) { return (trial.effect->hooks & hooks) != 0; });
+}
+
+Rig::Rig(const Dataset& data, const Split& split)
+    : data_(data), split_(split), measured_(data.of_role(ColumnRole::measured)) {
+    for (const DataColumn* column : measured_) {
+        const auto known = [&](std::uint8_t part) {
+            for (std::size_t i = 0; i < data.rows(); ++i)
+                if (split.held_out[i] == part && !std::isnan(column->values[i])) return true;
+            return false;
+        };
+        if (!known(0)) throw UserError(data.folder + ": the rows to be fitted hold no '" + column->name + "'");
+        if (!known(1)) throw UserError(data.folder + ": the rows that are held out hold no '" + column->name + "'");
     }
-    return out;
+}
+
+std::string Rig::why_not(const EffectInfo& effect) const {
+    if ((effect.hooks & ~hooks_) != 0)
+        return "the rig of " + data_.kind + " has nothing for the hooks of '" + spoken_name(effect) + "' to act on";
+    return "";
+}
+
+std::unique_ptr<Rig> make_rig(const Dataset& data, const Split& split) {
+    if (data.kind == "catheter-tip") return make_catheter_rig(data, split);
+    if (data.kind == "tendon-tip") return make_tendon_rig(data, split);
+    if (data.kind == "heart-motion") return make_heart_rig(data, split);
+    if (data.kind == "wall-tension") return make_tension_rig(data, split);
+    throw UserError(data.folder + ": data of kind '" + data.kind +
+                    "' can be read, but this program cannot yet be its rig; it explains catheter-tip, tendon-tip, "
+                    "heart-motion and wall-tension");
+}
+
+double rms_of(const Columns& residual, const Split& split, std::uint8_t part) {
+    double sum = 0.0;
+    for (const auto& column : residual) {
+        const double r = rms(column, split.held_out, part);
+        if (!std::isnan(r)) sum += r * r;
+    }
+    return residual.empty() ? std::numeric_limits<double>::quiet_NaN()
+                            : std::sqrt(sum / static_cast<double>(residual.size()));
 }
 
 }  // namespace cathlab

@@ -1,27 +1,75 @@
-// The smallest world in which an effect acts on what a data set measures: the effect's own code runs, not a copy of it.
+// What was measured, done again by the engine: the smallest world in which a kind of data makes sense.  The engine's
+// own kinematics and the effects' own code run in it, not copies of them.
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "effects/effect.h"
 #include "explain/dataset.h"
+#include "explain/split.h"
+#include "optimise/problem.h"
 
 namespace cathlab {
 
-/// Why this program cannot try the effect on this data, in a sentence; nothing where it can.
-///   heart-motion: effects that use the hooks `drive` and `measure` only.  The rig is one held particle at the sensor:
-///   what the drive does to a support and to the heart is added to the measured coordinates (along the axis where one
-///   coordinate was measured; (0, 0, 1) where the data names no axis).
-std::optional<std::string> why_not_tried(const EffectInfo& effect, const Dataset& data);
+/// Numbers of every measured column, (columns x rows).
+using Columns = std::vector<std::vector<double>>;
 
-/// What the effect adds to each measured column, (columns x rows), with these parameter values.
-std::vector<std::vector<double>> effect_on_rig(const EffectInfo& effect, std::span<const double> values,
-                                               const Dataset& data);
+/// An effect with values for all of its parameters.
+struct EffectTrial {
+    const EffectInfo* effect = nullptr;
+    std::vector<double> values;
+    /// What runs by its own clock goes on between recordings: its phase at the start of each run, less that of the
+    /// first.  Empty = the recordings begin alike.
+    std::vector<double> phase_of_run = {};
+};
 
-/// Which of the effect's parameters the rig can tell from one another: false = held at its default.
-std::vector<bool> identifiable(const EffectInfo& effect, const Dataset& data);
+/// The place of the parameter `phase`, or the number of parameters where there is none.
+std::size_t phase_place(const EffectInfo& effect);
+
+using NamedNumbers = std::vector<std::pair<std::string, double>>;
+
+/// Const after construction; its functions may be called from several threads.
+class Rig {
+public:
+    Rig(const Dataset& data, const Split& split);
+    virtual ~Rig() = default;
+    Rig(const Rig&) = delete;
+    Rig& operator=(const Rig&) = delete;
+
+    const Dataset& data() const { return data_; }
+    const Split& split() const { return split_; }
+    /// Measured columns, in the data's order.
+    const std::vector<const DataColumn*>& measured() const { return measured_; }
+
+    /// The base model's free numbers that a search has to find; those that are linear are found by residual() itself.
+    virtual std::vector<Bound> bounds() const { return {}; }
+    /// Where to begin with them.
+    virtual std::vector<double> start() const { return {}; }
+
+    /// Measured less modelled, with these base numbers and effects; NaN where nothing was measured.
+    virtual Columns residual(std::span<const double> base, std::span<const EffectTrial> effects) const = 0;
+
+    /// The base model's numbers, the linear ones too, with names.
+    virtual NamedNumbers parameters(std::span<const double> base, std::span<const EffectTrial> effects) const = 0;
+
+    /// Why an effect cannot be tried on these data, in a sentence; "" where it can.
+    virtual std::string why_not(const EffectInfo& effect) const;
+
+protected:
+    const Dataset& data_;
+    const Split& split_;
+    std::vector<const DataColumn*> measured_;
+    unsigned hooks_ = 0;  ///< that this rig asks
+};
+
+/// Throws UserError for kinds without a rig, and for data that do not determine the base model.
+std::unique_ptr<Rig> make_rig(const Dataset& data, const Split& split);
+
+/// The rows that the fit sees (0) or that judge it (1): root mean square a measured column.  NaN without such a row.
+double rms_of(const Columns& residual, const Split& split, std::uint8_t part);
 
 }  // namespace cathlab

@@ -1,237 +1,55 @@
 #include "explain/tracer.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <mutex>
+#include <set>
 #include <sstream>
 
 #include "core/errors.h"
-#include "core/random.h"
-#include "explain/base_model.h"
-#include "explain/rig.h"
-#include "optimise/local.h"
-#include "optimise/swarm.h"
+#include "core/parallel.h"
+#include "core/svg_plot.h"
+#include "explain/fit.h"
+#include "explain/residual.h"
 
 namespace cathlab {
 namespace {
 
-using Columns = std::vector<std::vector<double>>;
-
 constexpr double significant = 0.01;
-constexpr double least_gain = 0.02;
-constexpr double floor_factor = 1.15;  // a residual this near to the noise is noise
+constexpr double not_apart = 0.05;      // above it two models explain alike
+constexpr double least_gain = 0.01;     // of the held-out error
+constexpr double floor_factor = 1.15;   // a residual this near to the noise is noise
+constexpr std::size_t kept_models = 3;  // from round to round
 
-void add(Columns& to, const Columns& more) {
-    for (std::size_t c = 0; c < to.size(); ++c)
-        for (std::size_t i = 0; i < to[c].size(); ++i) to[c][i] += more[c][i];
-}
-
-/// Root mean square a column, over the rows of one part.
-double rms_of(const Columns& residual, const std::vector<std::uint8_t>& held_out, std::uint8_t part) {
-    double sum = 0.0;
-    for (const auto& column : residual) {
-        const double r = rms(column, held_out, part);
-        if (!std::isnan(r)) sum += r * r;
-    }
-    return std::sqrt(sum / static_cast<double>(residual.size()));
-}
-
-/// How often chance alone would lower the squared error of the held-out blocks by as much (signs of the blocks
-/// flipped).
-double permutation_p(const Columns& before, const Columns& after, const Split& split, std::uint64_t seed) {
-    constexpr int draws = 4000;
-    std::vector<double> gain(static_cast<std::size_t>(split.blocks), 0.0);
-    for (std::size_t c = 0; c < before.size(); ++c)
-        for (std::size_t i = 0; i < before[c].size(); ++i)
-            if (split.held_out[i] != 0 && !std::isnan(before[c][i]))
-                gain[static_cast<std::size_t>(split.block[i])] +=
-                    before[c][i] * before[c][i] - after[c][i] * after[c][i];
-    double observed = 0.0;
-    for (const double g : gain) observed += g;
-    int as_large = 0;
-    for (int draw = 0; draw < draws; ++draw) {
-        double sum = 0.0;
-        for (std::size_t b = 0; b < gain.size(); ++b) {
-            const bool flip = random_uniform(seed, RandomStream::sampling, static_cast<std::uint64_t>(draw), b) < 0.5;
-            sum += flip ? -gain[b] : gain[b];
-        }
-        as_large += sum >= observed ? 1 : 0;
-    }
-    return (1.0 + as_large) / (1.0 + draws);
-}
-
-struct Fit {
-    std::vector<double> values;  // all parameters of the effect
-    Columns contribution;
-    bool on_bound = false;
-    std::string bound_name;
-};
-
-/// One effect fitted beside the base model and what was already found.
-class Fitter {
-public:
-    Fitter(const EffectInfo& effect, const Dataset& data, const Split& split, const BaseModel& base,
-           const Columns& found)
-        : effect_(effect), data_(data), split_(split), base_(base), found_(found) {
-        const std::vector<bool> free = identifiable(effect, data);
-        for (std::size_t k = 0; k < free.size(); ++k) {
-            const Parameter& p = effect.parameters[k];
-            values_.push_back(p.default_value);
-            if (!free[k]) continue;
-            free_.push_back(k);
-            problem_.bounds.push_back({p.minimum, p.maximum, std::string(p.key)});
-            start_.push_back(p.default_value);
-        }
-        problem_.objective = [this](std::span<const double> x) { return objective(x); };
-    }
-
-    bool nothing_to_fit() const { return free_.empty(); }
-
-    Fit run(const ExplainOptions& options) {
-        SwarmOptions swarm;
-        swarm.particles = 32;
-        swarm.generations = 25;
-        swarm.omega = 0.6;
-        swarm.eta1 = swarm.eta2 = 1.2;
-        swarm.seed = options.seed;
-        swarm.threads = options.threads;
-        problem_.start = start_;
-        Result best = minimise_swarm(problem_, swarm);
-        std::vector<std::vector<double>> starts{best.best};
-        for (const auto& s : spectral_starts()) starts.push_back(s);
-        for (const auto& s : starts) {
-            problem_.start = s;
-            LocalOptions local;
-            local.method = LocalMethod::sbplx;
-            local.max_evaluations = 400;
-            local.first_step = 0.02;
-            local.x_tolerance = 1e-7;
-            const Result result = minimise_local(problem_, local);
-            if (result.value < best.value) best = result;
-        }
-        return describe(best.best);
-    }
-
-private:
-    std::vector<double> all_values(std::span<const double> x) const {
-        std::vector<double> values = values_;
-        for (std::size_t k = 0; k < free_.size(); ++k) values[free_[k]] = x[k];
-        return values;
-    }
-
-    double objective(std::span<const double> x) const {
-        Columns sum = effect_on_rig(effect_, all_values(x), data_);
-        add(sum, found_);
-        const double error = rms_of(base_.residual(sum), split_.held_out, 0);
-        double ridge = 0.0;
-        for (std::size_t k = 0; k < free_.size(); ++k) {
-            const Bound& b = problem_.bounds[k];
-            const double off = (x[k] - start_[k]) / (b.upper - b.lower);
-            ridge += off * off / static_cast<double>(free_.size());
-        }
-        return error * error * (1.0 + 1e-4 * ridge);
-    }
-
-    /// Parameters in seconds begin at the periods that the residual shows, pure numbers from 0 to 1 (phases) at four
-    /// places.
-    std::vector<std::vector<double>> spectral_starts() const {
-        std::vector<std::vector<double>> out;
-        std::optional<std::size_t> period, phase;
-        for (std::size_t k = 0; k < free_.size(); ++k) {
-            const Parameter& p = effect_.parameters[free_[k]];
-            if (p.unit == "s" && !period) period = k;
-            if (p.key.find("phase") != std::string_view::npos && !phase) phase = k;
-        }
-        if (!period) return out;
-        for (const auto& column : base_.residual(found_)) {
-            const SpectrumPeak peak = highest_peak(data_.time_s, column, data_.run);
-            for (const double factor : {1.0, 2.0})
-                for (const double place : {0.1, 0.35, 0.6, 0.85}) {
-                    std::vector<double> s = start_;
-                    const Bound& b = problem_.bounds[*period];
-                    s[*period] = std::clamp(peak.period_s * factor, b.lower, b.upper);
-                    if (phase) s[*phase] = place;
-                    out.push_back(s);
-                    if (!phase) break;
-                }
-        }
-        return out;
-    }
-
-    Fit describe(const std::vector<double>& x) const {
-        Fit fit;
-        fit.values = all_values(x);
-        fit.contribution = effect_on_rig(effect_, fit.values, data_);
-        for (std::size_t k = 0; k < free_.size(); ++k) {
-            const Bound& b = problem_.bounds[k];
-            const double near = 1e-3 * (b.upper - b.lower);
-            // Directions and phases are pure numbers whose ends are no limits of strength.
-            if (effect_.parameters[free_[k]].unit != "1" && (x[k] - b.lower < near || b.upper - x[k] < near)) {
-                fit.on_bound = true;
-                fit.bound_name = b.name;
-            }
-        }
-        return fit;
-    }
-
-    const EffectInfo& effect_;
-    const Dataset& data_;
-    const Split& split_;
-    const BaseModel& base_;
-    const Columns& found_;
-    std::vector<double> values_, start_;
-    std::vector<std::size_t> free_;
-    Problem problem_;
-};
-
-std::string rounded(double value) {
-    std::ostringstream out;
-    out.precision(3);
-    out << value;
-    return out.str();
-}
-
-std::vector<Structure> describe_left_over(const Dataset& data, const BaseModel& base, const Columns& residual) {
-    std::vector<Structure> out;
-    for (std::size_t c = 0; c < residual.size(); ++c) {
-        const DataColumn& column = *base.measured()[c];
-        const std::string unit = column.unit.empty() ? "" : " " + column.unit;
-        const SpectrumPeak peak = highest_peak(data.time_s, residual[c], data.run);
-        if (peak.false_alarm < significant && peak.explained > 0.05)
-            out.push_back({"oscillation", column.name, peak.period_s, peak.amplitude,
-                           "period " + rounded(peak.period_s) + " s, " + rounded(peak.amplitude) + unit + " in " +
-                               column.quantity});
-        const double part = outlier_part(residual[c]);
-        if (part > 0.005)
-            out.push_back(
-                {"outliers", column.name, 0.0, part, rounded(100.0 * part) + " % outliers in " + column.quantity});
-        const double memory = lag_one_autocorrelation(residual[c], data.run);
-        if (memory > 0.2)
-            out.push_back(
-                {"correlation", column.name, 0.0, memory,
-                 "neighbouring rows of " + column.quantity + " are alike (correlation " + rounded(memory) + ")"});
-    }
+std::set<std::string_view> names_of(const FittedModel& model) {
+    std::set<std::string_view> out;
+    for (const EffectTrial& trial : model.effects) out.insert(trial.effect->name);
     return out;
+}
+
+bool holds(const FittedModel& model, const EffectInfo* effect) {
+    return std::any_of(model.effects.begin(), model.effects.end(),
+                       [&](const EffectTrial& trial) { return trial.effect == effect; });
 }
 
 std::string overlay_text(const std::vector<FittedEffect>& effects) {
     std::ostringstream out;
     for (const FittedEffect& effect : effects) {
-        out << "[effects." << effect.name << "]\nenabled = true\n";
+        out << "[effects." << effect.info->name << "]\nenabled = true\n";
         for (const auto& [key, value] : effect.parameters) {
             std::ostringstream number;
             number.precision(9);
             number << value;
             const std::string text = number.str();
-            out << key << " = " << text << (text.find_first_of(".e") == std::string::npos ? ".0" : "") << "\n";
+            out << key << " = " << text << (text.find_first_of(".en") == std::string::npos ? ".0" : "") << "\n";
         }
     }
     return out.str();
 }
 
-double floor_of(const Dataset& data, const Columns& residual) {
-    if (data.sensor_noise > 0.0) return data.sensor_noise;
+double noise_of(const Dataset& data, const Columns& residual) {
     double sum = 0.0;
     for (const auto& column : residual) {
         const double noise = noise_by_differences(column, data.run);
@@ -239,6 +57,296 @@ double floor_of(const Dataset& data, const Columns& residual) {
     }
     return std::sqrt(sum / static_cast<double>(residual.size()));
 }
+
+/// A model that was tried: what it came from, and how it does.
+struct Child {
+    std::size_t parent = 0;
+    const EffectInfo* effect = nullptr;
+    FittedModel model;
+    double held_out_cost = 0.0, p = 1.0;
+    std::string refused;
+};
+
+/// The search of one explanation.
+class Search {
+public:
+    Search(const Dataset& data, const ExplainOptions& options)
+        : data_(data),
+          options_(options),
+          split_(split_rows(data)),
+          rig_(make_rig(data, split_)),
+          fitter_(*rig_, data.sensor_noise),
+          workers_(std::max(1, options.threads)) {}
+
+    Explanation run() {
+        choose_candidates();
+        FittedModel base = fitter_.begin(declared_);
+        out_.split = split_;
+        out_.before = base.residual;
+        out_.train_before = rms_of(base.residual, split_, 0);
+        out_.held_out_before = rms_of(base.residual, split_, 1);
+        kept_ = {base};
+        for (round_ = 0; round_ < options_.max_effects; ++round_)
+            if (!next_round()) break;
+        FittedModel best = kept_[0];
+        drop_what_is_not_needed(best);
+        finish(best);
+        return std::move(out_);
+    }
+
+private:
+    void choose_candidates() {
+        for (const std::string& name : data_.declared_effects) {
+            const EffectInfo* effect = find_effect(name);
+            if (effect == nullptr) {
+                out_.cannot.push_back("'" + name + "' is declared, but this program knows no effect of that name");
+                continue;
+            }
+            const std::string why = rig_->why_not(*effect);
+            if (!why.empty() || !fitter_.learn(*effect))
+                out_.cannot.push_back("'" + name + "' is declared, but cannot act here" +
+                                      (why.empty() ? "" : ": " + why));
+            else
+                declared_.push_back(effect);
+        }
+        for (const EffectInfo& effect : effect_table()) {
+            const auto& kinds = effect.applies_to;
+            if (effect.for_tests || std::find(kinds.begin(), kinds.end(), data_.kind) == kinds.end()) continue;
+            if (std::find(declared_.begin(), declared_.end(), &effect) != declared_.end()) continue;
+            Candidate candidate{spoken_name(effect), std::numeric_limits<double>::quiet_NaN(), 1.0,
+                                rig_->why_not(effect)};
+            if (candidate.refused_because.empty() && !fitter_.learn(effect))
+                candidate.refused_because = "none of its parameters changes anything here";
+            if (candidate.refused_because.empty()) tried_.push_back(&effect);
+            out_.candidates.push_back(std::move(candidate));
+        }
+    }
+
+    Candidate& row_of(const EffectInfo& effect) {
+        const std::string name = spoken_name(effect);
+        return *std::find_if(out_.candidates.begin(), out_.candidates.end(),
+                             [&](const Candidate& c) { return c.name == name; });
+    }
+
+    /// Every candidate beside every kept model; false where nothing more is found.
+    bool next_round() {
+        fitter_.weigh_by(kept_[0]);
+        std::vector<Child> children;
+        std::set<std::set<std::string_view>> sets;
+        for (std::size_t parent = 0; parent < kept_.size(); ++parent)
+            for (const EffectInfo* effect : tried_) {
+                if (holds(kept_[parent], effect)) continue;
+                std::set<std::string_view> names = names_of(kept_[parent]);
+                names.insert(effect->name);
+                if (!sets.insert(names).second) continue;
+                children.emplace_back();
+                children.back().parent = parent;
+                children.back().effect = effect;
+            }
+        if (children.empty()) return false;
+        fit_all(children);
+        std::vector<Child*> accepted;
+        for (Child& child : children) {
+            judge(child, static_cast<double>(children.size()));
+            if (child.refused.empty()) accepted.push_back(&child);
+        }
+        std::stable_sort(accepted.begin(), accepted.end(),
+                         [](const Child* a, const Child* b) { return a->held_out_cost < b->held_out_cost; });
+        if (!accepted.empty() && !beats_plain_shapes(*accepted[0])) accepted.clear();
+        note(children, accepted);
+        if (accepted.empty()) return false;
+        find_equals(accepted);
+        std::vector<FittedModel> next;
+        for (std::size_t k = 0; k < std::min(kept_models, accepted.size()); ++k)
+            next.push_back(std::move(accepted[k]->model));
+        kept_ = std::move(next);
+        return true;
+    }
+
+    void fit_all(std::vector<Child>& children) {
+        std::atomic<std::size_t> done{0};
+        std::atomic<bool> stop{false};
+        std::mutex telling;
+        workers_.for_ranges(children.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end && !stop; ++k) {
+                children[k].model = fitter_.with(kept_[children[k].parent], *children[k].effect);
+                const double part = static_cast<double>(++done) / static_cast<double>(children.size());
+                if (!options_.on_progress) continue;
+                const std::lock_guard lock(telling);
+                if (!options_.on_progress((round_ + part) / (options_.max_effects + 1.0))) stop = true;
+            }
+        });
+        if (stop) throw UserError("stopped; nothing was written");
+    }
+
+    void judge(Child& child, double tries) {
+        const FittedModel& parent = kept_[child.parent];
+        const LossScale& scale = fitter_.scale();
+        const double before = mean_cost(parent.residual, split_, 1, scale);
+        child.held_out_cost = mean_cost(child.model.residual, split_, 1, scale);
+        child.p =
+            std::min(1.0, tries * gain_by_chance(parent.residual, child.model.residual, split_, scale, options_.seed));
+        const auto trial = std::find_if(child.model.effects.begin(), child.model.effects.end(),
+                                        [&](const EffectTrial& t) { return t.effect == child.effect; });
+        const double gain = 1.0 - std::sqrt(child.held_out_cost / before);
+        if (child.p >= significant)
+            child.refused = "the held-out error does not fall by more than chance allows";
+        else if (gain < least_gain)
+            child.refused = "the held-out error falls by less than 1 %";
+        else
+            child.refused = why_no_effect(*trial, fitter_.free_parameters(*child.effect));
+    }
+
+    /// What a sine or a step without a mechanism says better is not explained by an effect.
+    bool beats_plain_shapes(const Child& child) {
+        const Columns& before = kept_[child.parent].residual;
+        const LossScale& scale = fitter_.scale();
+        for (const auto& shape : {plain_oscillation(data_, split_, before), plain_step(data_, split_, before, scale)}) {
+            if (!shape || mean_cost(shape->residual, split_, 1, scale) >= child.held_out_cost) continue;
+            if (gain_by_chance(child.model.residual, shape->residual, split_, scale, options_.seed) >= not_apart)
+                continue;
+            plain_better_ = shape->says.text;
+            return false;
+        }
+        return true;
+    }
+
+    /// The table of candidates: how each did when it was first tried, and why it was refused.
+    void note(const std::vector<Child>& children, const std::vector<Child*>& accepted) {
+        for (const Child& child : children) {
+            Candidate& row = row_of(*child.effect);
+            if (!std::isnan(row.held_out_rms) && child.parent != 0) continue;
+            row.held_out_rms = rms_of(child.model.residual, split_, 1);
+            row.p_value = child.p;
+            row.refused_because = child.refused;
+            if (!child.refused.empty()) continue;
+            if (accepted.empty())
+                row.refused_because = "a shape without a mechanism says more: " + plain_better_;
+            else if (&child != accepted[0])
+                row.refused_because = "'" + spoken_name(*accepted[0]->effect) + "' explains more";
+        }
+    }
+
+    /// Models that do as well as the best one with other effects.
+    void find_equals(const std::vector<Child*>& accepted) {
+        out_.ambiguous_with.clear();
+        out_.parting.clear();
+        const Child& best = *accepted[0];
+        const auto known = names_of(best.model);
+        for (std::size_t k = 1; k < accepted.size(); ++k) {
+            const Child& other = *accepted[k];
+            const double p =
+                gain_by_chance(other.model.residual, best.model.residual, split_, fitter_.scale(), options_.seed);
+            if (p < not_apart) continue;
+            for (const EffectTrial& trial : other.model.effects) {
+                const std::string name = spoken_name(*trial.effect);
+                if (known.count(trial.effect->name) > 0 ||
+                    std::find(out_.ambiguous_with.begin(), out_.ambiguous_with.end(), name) !=
+                        out_.ambiguous_with.end())
+                    continue;
+                out_.ambiguous_with.push_back(name);
+                if (out_.parting.empty()) out_.parting = where_they_differ(best, other);
+            }
+        }
+    }
+
+    std::string where_they_differ(const Child& a, const Child& b) const {
+        double most = 0.0;
+        std::size_t column = 0, row = 0;
+        for (std::size_t c = 0; c < a.model.residual.size(); ++c)
+            for (std::size_t i = 0; i < data_.rows(); ++i) {
+                const double d = std::fabs(a.model.residual[c][i] - b.model.residual[c][i]);
+                if (d > most) {
+                    most = d;
+                    column = c;
+                    row = i;
+                }
+            }
+        const DataColumn& measured = *rig_->measured()[column];
+        std::string text = "'" + spoken_name(*a.effect) + "' and '" + spoken_name(*b.effect) + "' differ most, by " +
+                           plain_number(most, 3) + " " + measured.unit + " in " + measured.name + ", at " +
+                           plain_number(data_.time_s[row], 4) + " s of run " +
+                           data_.run_names[static_cast<std::size_t>(data_.run[row])];
+        std::string inputs;
+        for (const DataColumn* input : data_.of_role(ColumnRole::input))
+            inputs += (inputs.empty() ? "" : ", ") + input->name + " = " + plain_number(input->values[row], 4);
+        if (!inputs.empty()) text += ", where " + inputs;
+        return text + ": more rows there would part them";
+    }
+
+    void drop_what_is_not_needed(FittedModel& best) {
+        std::size_t k = 0;
+        fitter_.weigh_by(best);
+        fitter_.refit(best, 25);
+        while (k < best.effects.size()) {
+            const EffectInfo* effect = best.effects[k].effect;
+            if (std::find(declared_.begin(), declared_.end(), effect) != declared_.end()) {
+                ++k;
+                continue;
+            }
+            const FittedModel without = fitter_.without(best, k);
+            const double p = gain_by_chance(without.residual, best.residual, split_, fitter_.scale(), options_.seed);
+            const double gain = 1.0 - std::sqrt(mean_cost(best.residual, split_, 1, fitter_.scale()) /
+                                                mean_cost(without.residual, split_, 1, fitter_.scale()));
+            const std::string none = why_no_effect(best.effects[k], fitter_.free_parameters(*effect));
+            if (p >= significant || gain < 0.5 * least_gain || !none.empty()) {
+                row_of(*effect).refused_because =
+                    none.empty() ? "no longer needed beside the others" : none + " beside the others";
+                best = without;
+                out_.effects.clear();
+                k = 0;
+                continue;
+            }
+            FittedEffect found{spoken_name(*effect), effect, {}, p, rms_of(without.residual, split_, 1), 0.0};
+            for (std::size_t j = 0; j < effect->parameters.size(); ++j)
+                found.parameters.emplace_back(std::string(effect->parameters[j].key), best.effects[k].values[j]);
+            out_.effects.push_back(std::move(found));
+            ++k;
+        }
+    }
+
+    void finish(const FittedModel& best) {
+        out_.after = best.residual;
+        out_.train_after = rms_of(best.residual, split_, 0);
+        out_.held_out_after = rms_of(best.residual, split_, 1);
+        for (FittedEffect& effect : out_.effects) {
+            effect.held_out_after = out_.held_out_after;
+            effect.p_value = std::min(1.0, effect.p_value * static_cast<double>(tried_.size()));
+            row_of(*effect.info).refused_because.clear();
+        }
+        std::stable_sort(out_.effects.begin(), out_.effects.end(), [](const FittedEffect& a, const FittedEffect& b) {
+            return a.held_out_before > b.held_out_before;
+        });
+        for (const FittedEffect& effect : out_.effects) std::erase(out_.ambiguous_with, effect.name);
+        if (out_.effects.empty()) out_.ambiguous_with.clear();
+        if (out_.ambiguous_with.empty()) out_.parting.clear();
+        out_.base_parameters = rig_->parameters(best.base, best.effects);
+        out_.estimated_noise = noise_of(data_, best.residual);
+        out_.noise_floor = data_.sensor_noise > 0.0 ? data_.sensor_noise : out_.estimated_noise;
+        fitter_.weigh_by(best);
+        const bool noise_only = out_.held_out_after <= floor_factor * out_.noise_floor;
+        if (out_.effects.empty())
+            out_.verdict = noise_only ? Verdict::nothing_missing : Verdict::unexplained;
+        else
+            out_.verdict = noise_only ? Verdict::explained : Verdict::partly_explained;
+        out_.left_over = describe_structure(data_, split_, best.residual, fitter_.scale(), options_.seed);
+        if (!noise_only) out_.empirical = fit_empirical(data_, split_, best.residual, fitter_.scale(), options_.seed);
+        out_.overlay = overlay_text(out_.effects);
+        if (options_.on_progress && !options_.on_progress(1.0)) throw UserError("stopped; nothing was written");
+    }
+
+    const Dataset& data_;
+    const ExplainOptions& options_;
+    Split split_;
+    std::unique_ptr<Rig> rig_;
+    Fitter fitter_;
+    Workers workers_;
+    std::vector<const EffectInfo*> declared_, tried_;
+    std::vector<FittedModel> kept_;
+    std::string plain_better_;
+    int round_ = 0;
+    Explanation out_;
+};
 
 }  // namespace
 
@@ -253,95 +361,7 @@ std::string verdict_text(Verdict verdict) {
 }
 
 Explanation explain(const Dataset& data, const ExplainOptions& options) {
-    const Split split = split_rows(data);
-    const BaseModel base(data, split);
-    Explanation out;
-    out.base_parameters = base.parameters();
-    Columns found(base.measured().size(), std::vector<double>(data.rows(), 0.0));
-    Columns residual = base.residual(found);
-    out.noise_floor = floor_of(data, residual);
-    out.train_before = rms_of(residual, split.held_out, 0);
-    out.held_out_before = rms_of(residual, split.held_out, 1);
-
-    std::vector<const EffectInfo*> candidates;
-    for (const EffectInfo& effect : effect_table()) {
-        const auto& kinds = effect.applies_to;
-        if (effect.for_tests || std::find(kinds.begin(), kinds.end(), data.kind) == kinds.end()) continue;
-        const auto& declared = data.declared_effects;
-        const std::string name(effect.name);
-        if (std::find(declared.begin(), declared.end(), name) != declared.end()) {
-            out.cannot.push_back("'" + name + "' is declared, but the base model of kind '" + data.kind +
-                                 "' does not hold declared effects yet");
-            continue;
-        }
-        if (const auto why = why_not_tried(effect, data)) {
-            out.candidates.push_back({name, std::numeric_limits<double>::quiet_NaN(), 1.0, *why});
-            out.cannot.push_back("'" + name + "' could not be tried: " + *why);
-            continue;
-        }
-        candidates.push_back(&effect);
-    }
-
-    const auto noise_only = [&] { return rms_of(residual, split.held_out, 1) <= floor_factor * out.noise_floor; };
-    const auto tries = static_cast<double>(candidates.size());
-    for (int round = 0; round < options.max_effects && !candidates.empty(); ++round) {
-        const double before = rms_of(residual, split.held_out, 1);
-        std::optional<std::size_t> best;
-        Fit best_fit;
-        double best_rms = before, best_p = 1.0;
-        for (std::size_t k = 0; k < candidates.size(); ++k) {
-            const EffectInfo& effect = *candidates[k];
-            if (options.on_progress &&
-                !options.on_progress((round + static_cast<double>(k) / tries) / std::max(1, options.max_effects)))
-                throw UserError("stopped; nothing was written");
-            Candidate candidate{std::string(effect.name), before, 1.0, ""};
-            Fitter fitter(effect, data, split, base, found);
-            if (fitter.nothing_to_fit()) {
-                candidate.refused_because = "none of its parameters changes anything here";
-                out.candidates.push_back(candidate);
-                continue;
-            }
-            const Fit fit = fitter.run(options);
-            Columns sum = found;
-            add(sum, fit.contribution);
-            const Columns after = base.residual(sum);
-            candidate.held_out_rms = rms_of(after, split.held_out, 1);
-            candidate.p_value = std::min(1.0, tries * permutation_p(residual, after, split, options.seed));
-            if (candidate.p_value >= significant)
-                candidate.refused_because = "the held-out error does not fall by more than chance allows";
-            else if (candidate.held_out_rms > (1.0 - least_gain) * before)
-                candidate.refused_because = "the held-out error falls by less than 2 %";
-            else if (fit.on_bound)
-                candidate.refused_because = "its '" + fit.bound_name + "' ends on a bound of its range";
-            else if (candidate.held_out_rms < best_rms) {
-                best = k;
-                best_fit = fit;
-                best_rms = candidate.held_out_rms;
-                best_p = candidate.p_value;
-            }
-            out.candidates.push_back(candidate);
-        }
-        if (!best) break;
-        const EffectInfo& taken = *candidates[*best];
-        FittedEffect effect{std::string(taken.name), {}, best_p, before, best_rms};
-        for (std::size_t k = 0; k < taken.parameters.size(); ++k)
-            effect.parameters.emplace_back(std::string(taken.parameters[k].key), best_fit.values[k]);
-        out.effects.push_back(std::move(effect));
-        add(found, best_fit.contribution);
-        residual = base.residual(found);
-        candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(*best));
-    }
-
-    out.train_after = rms_of(residual, split.held_out, 0);
-    out.held_out_after = rms_of(residual, split.held_out, 1);
-    out.left_over = describe_left_over(data, base, residual);
-    if (data.sensor_noise <= 0.0) out.noise_floor = floor_of(data, residual);
-    out.overlay = overlay_text(out.effects);
-    if (out.effects.empty())
-        out.verdict = noise_only() ? Verdict::nothing_missing : Verdict::unexplained;
-    else
-        out.verdict = noise_only() ? Verdict::explained : Verdict::partly_explained;
-    return out;
+    return Search(data, options).run();
 }
 
 }  // namespace cathlab

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "explain/dataset.h"
-#include "explain/residual.h"
+#include "explain/rig.h"
+#include "explain/structure.h"
 
 namespace cathlab {
 
@@ -15,10 +17,12 @@ enum class Verdict { nothing_missing, explained, partly_explained, unexplained }
 std::string verdict_text(Verdict verdict);  ///< "nothing missing", ...
 
 struct FittedEffect {
-    std::string name;
-    std::vector<std::pair<std::string, double>> parameters;
-    double p_value = 1.0;  ///< after Bonferroni's correction for the candidates tried
-    double held_out_before = 0.0, held_out_after = 0.0;
+    std::string name;  ///< as data sets write it, with hyphens
+    const EffectInfo* info = nullptr;
+    NamedNumbers parameters;
+    double p_value = 1.0;          ///< of the model without it against the model with it, corrected for the tries
+    double held_out_before = 0.0;  ///< of the model without it, fitted again
+    double held_out_after = 0.0;   ///< of the whole model
 };
 
 struct Candidate {
@@ -28,40 +32,38 @@ struct Candidate {
     std::string refused_because;  ///< "" = taken
 };
 
-/// Something left over that has a form.
-struct Structure {
-    std::string what;        ///< "oscillation", "outliers", "correlation"
-    std::string depends_on;  ///< a measured column
-    double period_s = 0.0, amplitude = 0.0;
-    std::string text;
-};
-
 struct Explanation {
     Verdict verdict = Verdict::unexplained;
-    std::vector<FittedEffect> effects;
-    std::vector<std::pair<std::string, double>> base_parameters;
-    double noise_floor = 0.0;  ///< as declared, otherwise estimated by differences; root mean square a measured column
+    std::vector<FittedEffect> effects;  ///< what helps most first
+    NamedNumbers base_parameters;
+    double noise_floor = 0.0;      ///< as declared, otherwise as estimated; root mean square a measured column
+    double estimated_noise = 0.0;  ///< from differences of neighbours of what is left
     double train_before = 0.0, train_after = 0.0, held_out_before = 0.0, held_out_after = 0.0;
     std::vector<Candidate> candidates;
+    std::vector<std::string> ambiguous_with;  ///< names that these data do not tell from the effects found
+    std::string parting;                      ///< where their predictions differ most: what to record
     std::vector<Structure> left_over;
+    std::optional<EmpiricalModel> empirical;
     std::vector<std::string> cannot;  ///< what this program could not do with these data, a sentence each
     std::string overlay;              ///< TOML to lay over a scene; "" where no effect was found
+    Columns before, after;            ///< residuals of base model and final model
+    Split split;
 };
 
 struct ExplainOptions {
-    int max_effects = 2;  ///< 0 or more
+    int max_effects = 3;  ///< 0 or more
     int threads = 1;      ///< do not change the result
     std::uint64_t seed = 1;
     std::function<bool(double part_done)> on_progress;  ///< false = stop: throws UserError, nothing was written
 };
 
-/// The base model is fitted on the training rows.  Every effect of the manifest that applies to the kind, and was not
-/// declared, is fitted inside the model on the same rows: a swarm, then local searches, also from the periods that the
-/// residual's spectrum shows.  An effect is taken when the held-out error falls by more than a sign-flip permutation of
-/// blocks of time would give by chance (corrected p below 0.01) by at least 2 %, and no parameter with a unit ends on a
-/// bound of its range.  Parameters that the data cannot tell apart stay near their defaults: the objective has a ridge
-/// of 1e-4 of its value.  Effects are taken one after another; what has been taken is not fitted again beside a later
-/// one. Throws UserError for kinds without a rig and for data that do not determine the base model.
+/// The base model, with the declared effects in it, is fitted on the training rows.  Every other effect of the manifest
+/// that applies to the kind is fitted inside the model on the same rows, beside what the three best models so far
+/// hold.  It is taken when the held-out error falls by more than flipped signs of whole blocks would give by chance
+/// (p, times the number of tries, below 0.01) and by 1 % of itself at least, by more than a plain sine or step without
+/// a mechanism, when its strength is not zero and no parameter ends on a bound of its range.  What is no longer needed
+/// beside later ones is dropped.  Throws UserError for kinds without a rig and for data that do not determine the base
+/// model.
 Explanation explain(const Dataset& data, const ExplainOptions& options = {});
 
 }  // namespace cathlab

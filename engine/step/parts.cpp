@@ -57,6 +57,11 @@ EffectContext effect_context(const Parts& parts, double time_s, double dt) {
     context.wall_position = parts.wall_state->x;
     context.wall_mass = parts.wall->mass;
     context.wall_fixed = parts.wall->fixed;
+    if (parts.heart_state) {
+        context.heart_phase = parts.heart_state->phase;
+        context.heart_beats = parts.heart_state->beats;
+        context.heart_beat_s = 60.0 / parts.heart->rate_bpm;
+    }
     return context;
 }
 

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 
 #include "core/check.h"
+#include "step/actuation.h"
 #include "step/catheter_drive.h"
 #include "step/parts.h"
 #include "step/step.h"
@@ -70,6 +72,13 @@ void prepare(World& world) {
         for (const CentrelineNode& node : (*anatomy)->centreline.nodes) route.path.push_back(node.position);
         world.add(catheter, std::move(route));
         Parts parts = find_parts(world);
+        const bool actuated = std::any_of(parts.effects.begin(), parts.effects.end(), [](const ActiveEffect* active) {
+            return (active->info->hooks & hook_actuation) != 0;
+        });
+        if (actuated) {
+            const double start = parts.catheter_state->insertion_mm, turned = parts.catheter_state->rotation_rad;
+            world.add(catheter, CatheterTravel{start, turned, start, turned});
+        }
         settle_catheter(parts);
     }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "step/actuation.h"
 #include "step/measure.h"
 #include "step/parts.h"
 #include "step/substep.h"
@@ -38,6 +39,8 @@ void step(World& world, const Input& wanted, Channels& channels) {
     Input input = wanted;
     parts.each_effect(hook_input, [&](Effect& effect) { effect.input(context, input); });
     input = clamped(parts, input);
+    // [effects: actuation]  what drive, cables and shaft make of it
+    actuate(parts, context, input);
 
     // [effects: drive]  where the supports and the heart go
     Drive drive;

@@ -32,7 +32,12 @@ void WallForces::detect_heart(const Parts& p, const Drive& drive, double h) {
     anchor_force_.assign(anchors_.size(), Vec3::Zero());
     if (!p.heart) return;
     advance(*p.heart, *p.heart_state, h, drive.heart_rate_scale);
-    const double displacement = p.heart_state->displacement_mm + drive.heart_displacement_mm;
+    double displacement = p.heart_state->displacement_mm;
+    if (drive.heart_amplitude_scale != 1.0) {
+        const double onset = profile(*p.heart, 0.0).displacement_mm;
+        displacement = onset + drive.heart_amplitude_scale * (displacement - onset);
+    }
+    displacement += drive.heart_displacement_mm;
     const Pose cylinder = cylinder_pose(*p.heart, p.anatomy->annulus->pose, displacement);
     if (p.heart->bonded)
         for (const Index i : p.annulus->particles) {

@@ -9,7 +9,7 @@
 
 #include "core/errors.h"
 #include "core/random.h"
-#include "explain/base_model.h"
+#include "explain/beat_clock.h"
 #include "explain/folder.h"
 
 using namespace cathlab;
@@ -128,12 +128,13 @@ TEST(Explain, FitsTheModulusOfAStraightLine) {
 }
 
 TEST(Explain, SaysWhatItCannotYetDo) {
-    std::string csv =
-        "run,t_s,insertion_mm,rotation_deg,proximal_bend_deg,distal_bend_deg,tip_x_mm,tip_y_mm,tip_z_mm\n";
-    for (int i = 0; i < 20; ++i) csv += "0," + std::to_string(i) + ",1,2,3,4,5,6,7\n";
+    std::string csv = "run,t_s,tool_x_mm,tool_y_mm,tool_z_mm,sensor_x_mm,sensor_y_mm,sensor_z_mm\n";
+    for (int i = 0; i < 20; ++i) csv += "0," + std::to_string(i) + ",1,2,3,4,5,6\n";
     const Folder folder(
-        "format = 1\nkind = \"catheter-tip\"\ntitle = \"t\"\nsource = \"s\"\nlicense = \"l\"\ndeclared_effects = []\n"
-        "sensor_noise = 0.1\n[setup]\n",
+        "format = 1\nkind = \"wall-contact\"\ntitle = \"t\"\nsource = \"s\"\nlicense = \"l\"\ndeclared_effects = "
+        "[]\nsensor_noise = 0.1\n[setup]\ntube = { radius_mm = 10.0, length_mm = 100.0, thickness_mm = 1.0 }\n"
+        "tool_radius_mm = 2.0\nsensor_rest_mm = [[1.0, 2.0, 3.0]]\ndensity_kg_m3 = 1000.0\n"
+        "material = { young_modulus_kpa = 500.0, poisson = 0.49 }\n",
         csv);
     const Dataset data = read_dataset(folder.path());
     try {

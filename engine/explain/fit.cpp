@@ -1,0 +1,304 @@
+#include "explain/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "explain/residual.h"
+#include "optimise/least_squares.h"
+
+namespace cathlab {
+namespace {
+
+bool is_strength(const EffectInfo& effect, const Parameter& p) {
+    return std::find(effect.strengths.begin(), effect.strengths.end(), p.key) != effect.strengths.end();
+}
+bool is_phase(const Parameter& p) {
+    return p.key == "phase";
+}
+bool is_direction(const Parameter& p) {
+    return p.key.starts_with("direction");
+}
+
+std::vector<double> defaults(const EffectInfo& effect) {
+    std::vector<double> out;
+    for (const Parameter& p : effect.parameters) out.push_back(p.default_value);
+    return out;
+}
+
+/// A place of the range where the effect certainly acts.
+std::vector<double> acting(const EffectInfo& effect) {
+    std::vector<double> out = defaults(effect);
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        const Parameter& p = effect.parameters[k];
+        if (is_strength(effect, p) && out[k] == 0.0) out[k] = 0.1 * p.maximum;
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string why_no_effect(const EffectTrial& trial, const std::vector<bool>& free) {
+    constexpr double near = 1e-3;
+    bool strong = false;
+    for (std::size_t k = 0; k < trial.values.size(); ++k) {
+        const Parameter& p = trial.effect->parameters[k];
+        if (!free[k]) continue;
+        const double value = trial.values[k], range = p.maximum - p.minimum;
+        if (is_strength(*trial.effect, p) && std::fabs(value) > near * range) strong = true;
+        if (is_phase(p) || is_direction(p)) continue;
+        // 0 and 1 are ends by meaning (none, all of it), not by the range that somebody chose.
+        const auto natural = [&](double bound) { return bound == 0.0 || (bound == 1.0 && p.unit == "1"); };
+        const bool low = value - p.minimum < near * range && !natural(p.minimum);
+        const bool high = p.maximum - value < near * range && !natural(p.maximum);
+        if (low || high) return "its '" + std::string(p.key) + "' ends on a bound of its range";
+    }
+    return strong ? "" : "its strength is zero";
+}
+
+double Fitter::cost_of(const FittedModel& model) const {
+    return mean_cost(model.residual, rig_.split(), 0, scale_);
+}
+
+void Fitter::refit(FittedModel& model, int iterations) const {
+    const Split& split = rig_.split();
+    const std::vector<Bound> base = rig_.bounds();
+    LeastSquaresProblem problem;
+    problem.bounds = base;
+    problem.start = model.base;
+    std::vector<double> weights(base.size(), 0.0), centres(base.size(), 0.0);
+    double rows = 0.0;
+    for (const auto& column : model.residual)
+        for (std::size_t i = 0; i < column.size(); ++i) rows += split.held_out[i] == 0 && !std::isnan(column[i]);
+    for (const EffectTrial& trial : model.effects) {
+        const std::vector<bool>& free = free_parameters(*trial.effect);
+        for (std::size_t k = 0; k < trial.values.size(); ++k) {
+            const Parameter& p = trial.effect->parameters[k];
+            const double v = std::clamp(trial.values[k], p.minimum, p.maximum);
+            Bound bound{p.minimum, p.maximum, std::string(p.key)};
+            if (is_phase(p)) bound = {p.minimum - 1.0, p.maximum + 1.0, bound.name};  // goes round
+            if (!free[k]) bound.lower = bound.upper = v;
+            problem.bounds.push_back(bound);
+            problem.start.push_back(v);
+            // A trace of ridge towards no effect, and towards the usual value of what only shapes it: numbers that the
+            // data cannot tell stay there.
+            weights.push_back(free[k] ? 3e-3 * std::sqrt(rows) / (p.maximum - p.minimum) : 0.0);
+            centres.push_back(is_strength(*trial.effect, p) ? 0.0 : p.default_value);
+        }
+        for (std::size_t run = 0; run < trial.phase_of_run.size(); ++run) {
+            problem.bounds.push_back({run == 0 ? 0.0 : -1.0, run == 0 ? 0.0 : 1.0, "phase of run"});
+            problem.start.push_back(trial.phase_of_run[run]);
+            weights.push_back(0.0);
+            centres.push_back(0.0);
+        }
+    }
+    if (problem.bounds.empty()) {
+        model.residual = rig_.residual(model.base, model.effects);
+        model.train_cost = cost_of(model);
+        return;
+    }
+    const auto unpack = [&](std::span<const double> x, FittedModel& to) {
+        std::size_t at = base.size();
+        to.base.assign(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(at));
+        for (EffectTrial& trial : to.effects) {
+            for (double& v : trial.values) v = x[at++];
+            for (double& v : trial.phase_of_run) v = x[at++];
+        }
+    };
+    problem.residuals = static_cast<std::size_t>(rows) + weights.size();
+    FittedModel trial = model;
+    problem.residual = [&](std::span<const double> x, std::span<double> out) {
+        unpack(x, trial);
+        const Columns left = rig_.residual(trial.base, trial.effects);
+        std::size_t at = 0;
+        for (std::size_t c = 0; c < left.size(); ++c)
+            for (std::size_t i = 0; i < left[c].size(); ++i)
+                if (split.held_out[i] == 0 && !std::isnan(model.residual[c][i]))
+                    out[at++] = scale_.softened(c, left[c][i]);
+        for (std::size_t k = 0; k < weights.size(); ++k) out[at++] = weights[k] * (x[k] - centres[k]);
+        return true;
+    };
+    LeastSquaresOptions options;
+    options.max_iterations = iterations;
+    options.value_tolerance = 1e-5;
+    const Result found = minimise_squares(problem, options);
+    unpack(found.best, model);
+    for (EffectTrial& fitted : model.effects)
+        for (std::size_t k = 0; k < fitted.values.size(); ++k)
+            if (is_phase(fitted.effect->parameters[k])) fitted.values[k] -= std::floor(fitted.values[k]);
+    model.residual = rig_.residual(model.base, model.effects);
+    model.train_cost = cost_of(model);
+}
+
+FittedModel Fitter::begin(std::span<const EffectInfo* const> declared) {
+    FittedModel model;
+    model.base = rig_.start();
+    model.residual = rig_.residual(model.base, {});
+    // The first fit sees large errors everywhere: its own scale, again and again until it stays.
+    constexpr int rounds = 4;
+    for (int k = 0; k < rounds; ++k) {
+        weigh_by(model);
+        const double before = model.train_cost;
+        refit(model, 40);
+        if (rig_.bounds().empty() || std::fabs(before - model.train_cost) < 1e-4 * model.train_cost) break;
+    }
+    for (const EffectInfo* effect : declared) {
+        weigh_by(model);
+        model = with(model, *effect);
+    }
+    weigh_by(model);
+    model.train_cost = cost_of(model);
+    return model;
+}
+
+bool Fitter::learn(const EffectInfo& effect) {
+    const std::vector<double> base = rig_.start();
+    const std::vector<double> usual = acting(effect);
+    const auto residual = [&](const std::vector<double>& values) {
+        const EffectTrial trial{&effect, values};
+        return rig_.residual(base, std::span(&trial, 1));
+    };
+    const Columns there = residual(usual);
+    std::vector<bool> out;
+    for (std::size_t k = 0; k < usual.size(); ++k) {
+        const Parameter& p = effect.parameters[k];
+        bool matters = false;
+        for (const double part : {0.13, 0.71}) {
+            std::vector<double> other = usual;
+            other[k] = usual[k] + part * ((part < 0.5 ? p.minimum : p.maximum) - usual[k]);
+            const Columns here = residual(other);
+            for (std::size_t c = 0; c < here.size() && !matters; ++c)
+                for (std::size_t i = 0; i < here[c].size() && !matters; ++i)
+                    matters = std::fabs(here[c][i] - there[c][i]) > 1e-7;
+        }
+        out.push_back(matters);
+    }
+    const bool any = std::find(out.begin(), out.end(), true) != out.end();
+    free_[&effect] = std::move(out);
+    return any;
+}
+
+std::vector<std::vector<double>> Fitter::starts(const FittedModel& from, const EffectInfo& effect) const {
+    const std::vector<bool>& free = free_parameters(effect);
+    std::size_t period = effect.parameters.size();
+    for (std::size_t k = 0; k < effect.parameters.size(); ++k)
+        if (free[k] && effect.parameters[k].key == "period_s") period = k;
+    const bool swings = period < effect.parameters.size() && phase_place(effect) < effect.parameters.size();
+    std::vector<std::vector<double>> levels;
+    for (const double level : {0.01, 0.05, 0.2}) {
+        for (const double sign : {1.0, -1.0}) {
+            std::vector<double> values = defaults(effect);
+            bool turned = false;
+            for (std::size_t k = 0; k < values.size(); ++k) {
+                const Parameter& p = effect.parameters[k];
+                if (!free[k] || !is_strength(effect, p)) continue;
+                turned = turned || p.minimum < 0.0;
+                values[k] = std::clamp((p.minimum < 0.0 ? sign : 1.0) * level * p.maximum, p.minimum, p.maximum);
+            }
+            // Half a turn of the phase is the other sign.
+            if (sign > 0.0 || (turned && !swings)) levels.push_back(values);
+        }
+    }
+    if (period == effect.parameters.size()) return levels;
+    // Periods that the residual shows, and all over the range: a rate that varies shows beside the beat's own lines.
+    const Dataset& data = rig_.data();
+    std::vector<double> periods;
+    const Parameter& range = effect.parameters[period];
+    double longest = 0.0;
+    for (const double t : data.time_s) longest = std::max(longest, t);
+    for (double p = range.minimum; p <= std::min(range.maximum, 2.0 * longest); p *= 1.5) periods.push_back(p);
+    for (const auto& column : from.residual) {
+        std::vector<double> seen = column;
+        for (std::size_t i = 0; i < seen.size(); ++i)
+            if (rig_.split().held_out[i] != 0) seen[i] = std::numeric_limits<double>::quiet_NaN();
+        for (const SpectrumPeak& peak : highest_peaks(data.time_s, seen, data.run, range.minimum, range.maximum, 3))
+            periods.push_back(peak.period_s);
+    }
+    std::vector<std::vector<double>> out;
+    for (const double p : periods)
+        for (std::vector<double> values : levels) {
+            values[period] = std::clamp(p, range.minimum, range.maximum);
+            out.push_back(values);
+        }
+    return out;
+}
+
+EffectTrial Fitter::turned(const FittedModel& from, const EffectTrial& trial) const {
+    constexpr int places = 8;
+    EffectTrial best = trial;
+    const std::size_t phase = phase_place(*trial.effect), runs = rig_.data().run_names.size();
+    if (phase == trial.values.size() || !free_parameters(*trial.effect)[phase]) return best;
+    std::vector<double> least(runs, std::numeric_limits<double>::infinity()), place(runs, 0.0);
+    std::vector<double> all(places, 0.0);
+    for (int k = 0; k < places; ++k) {
+        EffectTrial there = trial;
+        there.values[phase] = static_cast<double>(k) / places;
+        std::vector<double> cost(runs, 0.0);
+        const Columns left = rig_.residual(from.base, beside(from, there).effects);
+        for (std::size_t c = 0; c < left.size(); ++c)
+            for (std::size_t i = 0; i < left[c].size(); ++i)
+                if (rig_.split().held_out[i] == 0 && !std::isnan(left[c][i]))
+                    cost[static_cast<std::size_t>(rig_.data().run[i])] += scale_.cost(c, left[c][i]);
+        for (std::size_t run = 0; run < runs; ++run) {
+            all[static_cast<std::size_t>(k)] += cost[run];
+            if (cost[run] >= least[run]) continue;
+            least[run] = cost[run];
+            place[run] = there.values[phase];
+        }
+    }
+    // Recordings that are long enough to say so each have their own.
+    constexpr std::size_t rows_a_run = 40;
+    if (runs > 1 && rig_.data().rows() >= rows_a_run * runs) {
+        best.values[phase] = place[0];
+        best.phase_of_run.assign(runs, 0.0);
+        for (std::size_t run = 1; run < runs; ++run) {
+            const double ahead = place[run] - place[0];
+            best.phase_of_run[run] = ahead > 0.5 ? ahead - 1.0 : (ahead < -0.5 ? ahead + 1.0 : ahead);
+        }
+    } else {
+        best.values[phase] = static_cast<double>(std::min_element(all.begin(), all.end()) - all.begin()) / places;
+    }
+    return best;
+}
+
+FittedModel Fitter::beside(const FittedModel& from, const EffectTrial& trial) const {
+    FittedModel model;
+    model.base = from.base;
+    model.effects = from.effects;
+    // In the manifest's order, in which a step asks them.
+    const auto place = std::find_if(model.effects.begin(), model.effects.end(),
+                                    [&](const EffectTrial& known) { return known.effect > trial.effect; });
+    model.effects.insert(place, trial);
+    return model;
+}
+
+FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) const {
+    constexpr std::size_t searched = 3;
+    std::vector<FittedModel> tried;
+    for (const std::vector<double>& values : starts(from, effect)) {
+        FittedModel model = beside(from, turned(from, {&effect, values}));
+        model.residual = rig_.residual(model.base, model.effects);
+        model.train_cost = cost_of(model);
+        tried.push_back(std::move(model));
+        std::sort(tried.begin(), tried.end(),
+                  [](const FittedModel& a, const FittedModel& b) { return a.train_cost < b.train_cost; });
+        if (tried.size() > searched) tried.pop_back();
+    }
+    FittedModel best;
+    best.train_cost = std::numeric_limits<double>::infinity();
+    for (FittedModel& model : tried) {
+        refit(model, 25);
+        if (model.train_cost < best.train_cost) best = std::move(model);
+    }
+    return best;
+}
+
+FittedModel Fitter::without(const FittedModel& from, std::size_t k) const {
+    FittedModel model = from;
+    model.effects.erase(model.effects.begin() + static_cast<std::ptrdiff_t>(k));
+    model.residual = rig_.residual(model.base, model.effects);
+    refit(model, 25);
+    return model;
+}
+
+}  // namespace cathlab

@@ -1,0 +1,65 @@
+// Models fitted inside the rig: the base numbers and the effects' parameters together, on the rows that a fit may see.
+#pragma once
+
+#include <map>
+
+#include "explain/judge.h"
+#include "explain/rig.h"
+
+namespace cathlab {
+
+struct FittedModel {
+    std::vector<double> base;  ///< the rig's searched numbers
+    std::vector<EffectTrial> effects;
+    Columns residual;
+    double train_cost = 0.0;  ///< mean, by the fitter's scale
+};
+
+class Fitter {
+public:
+    /// noise: the declared one, 0 = not known.
+    Fitter(const Rig& rig, double noise) : rig_(rig), noise_(noise) {}
+
+    /// The base model with effects that are there without question.
+    FittedModel begin(std::span<const EffectInfo* const> declared);
+
+    /// Errors are weighed anew by what a model leaves.
+    void weigh_by(const FittedModel& model) { scale_ = loss_scale(model.residual, rig_.split(), noise_); }
+    const LossScale& scale() const { return scale_; }
+
+    /// Looks which of an effect's parameters change anything here: only those are searched, the others keep their
+    /// defaults.  Called once for every effect, before it is tried.  False: none of them does.
+    bool learn(const EffectInfo& effect);
+    const std::vector<bool>& free_parameters(const EffectInfo& effect) const { return free_.at(&effect); }
+
+    /// The model with one effect more, everything fitted together.  Several starts (periods from the spectrum of what
+    /// is left, phases all around), of which the three best are searched.
+    FittedModel with(const FittedModel& from, const EffectInfo& effect) const;
+
+    /// The model without its effect number k, the rest fitted again.
+    FittedModel without(const FittedModel& from, std::size_t k) const;
+
+    /// Goes on from where the model is.
+    void refit(FittedModel& model, int iterations) const;
+
+    const Rig& rig() const { return rig_; }
+
+private:
+    double cost_of(const FittedModel& model) const;
+    /// The model's numbers with one effect more; nothing fitted yet.
+    FittedModel beside(const FittedModel& from, const EffectTrial& trial) const;
+    /// The effect with its phase, in each run, where it helps most.
+    EffectTrial turned(const FittedModel& from, const EffectTrial& trial) const;
+    std::vector<std::vector<double>> starts(const FittedModel& from, const EffectInfo& effect) const;
+
+    const Rig& rig_;
+    double noise_;
+    LossScale scale_;
+    std::map<const EffectInfo*, std::vector<bool>> free_;
+};
+
+/// In words, why a fitted effect is none: its strength is zero, or a parameter ends on a bound of its range.  "" = it
+/// is one.
+std::string why_no_effect(const EffectTrial& trial, const std::vector<bool>& free);
+
+}  // namespace cathlab

@@ -1,0 +1,85 @@
+#include "explain/judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/random.h"
+
+namespace cathlab {
+namespace {
+
+constexpr double straight_from = 3.0;  // scales
+constexpr double median_to_deviation = 1.4826;
+
+}  // namespace
+
+double LossScale::cost(std::size_t column, double error) const {
+    const double z = std::fabs(error) / of_column[column];
+    return z <= straight_from ? z * z : straight_from * (2.0 * z - straight_from);
+}
+
+double LossScale::softened(std::size_t column, double error) const {
+    const double root = std::sqrt(cost(column, error));
+    return error < 0.0 ? -root : root;
+}
+
+LossScale loss_scale(const Columns& residual, const Split& split, double least) {
+    LossScale out;
+    for (const auto& column : residual) {
+        std::vector<double> sizes;
+        double largest = 0.0;
+        for (std::size_t i = 0; i < column.size(); ++i) {
+            if (split.held_out[i] != 0 || std::isnan(column[i])) continue;
+            sizes.push_back(std::fabs(column[i]));
+            largest = std::max(largest, sizes.back());
+        }
+        double scale = least;
+        if (!sizes.empty()) {
+            const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+            std::nth_element(sizes.begin(), middle, sizes.end());
+            scale = std::max(scale, median_to_deviation * *middle);
+        }
+        // A column that is modelled to the last digit still needs a scale.
+        out.of_column.push_back(std::max({scale, 1e-6 * largest, 1e-12}));
+    }
+    return out;
+}
+
+double mean_cost(const Columns& residual, const Split& split, std::uint8_t part, const LossScale& scale) {
+    double sum = 0.0, rows = 0.0;
+    for (std::size_t c = 0; c < residual.size(); ++c)
+        for (std::size_t i = 0; i < residual[c].size(); ++i) {
+            if (split.held_out[i] != part || std::isnan(residual[c][i])) continue;
+            sum += scale.cost(c, residual[c][i]);
+            rows += 1.0;
+        }
+    return rows > 0.0 ? sum / rows : 0.0;
+}
+
+double gain_by_chance(const Columns& before, const Columns& after, const Split& split, const LossScale& scale,
+                      std::uint64_t seed) {
+    constexpr int draws = 10000;
+    std::vector<double> gain(static_cast<std::size_t>(split.blocks), 0.0);
+    for (std::size_t c = 0; c < before.size(); ++c)
+        for (std::size_t i = 0; i < before[c].size(); ++i)
+            if (split.held_out[i] != 0 && !std::isnan(before[c][i]))
+                gain[static_cast<std::size_t>(split.block[i])] +=
+                    scale.cost(c, before[c][i]) - scale.cost(c, after[c][i]);
+    std::erase(gain, 0.0);
+    double observed = 0.0;
+    for (const double g : gain) observed += g;
+    if (gain.empty() || observed <= 0.0) return 1.0;
+    int as_large = 0;
+    for (int draw = 0; draw < draws; ++draw) {
+        double sum = 0.0;
+        std::uint64_t bits = 0;
+        for (std::size_t b = 0; b < gain.size(); ++b) {
+            if (b % 64 == 0) bits = random_bits(seed, RandomStream::sampling, static_cast<std::uint64_t>(draw), b / 64);
+            sum += ((bits >> (b % 64)) & 1U) != 0 ? gain[b] : -gain[b];
+        }
+        as_large += sum >= observed ? 1 : 0;
+    }
+    return (1.0 + as_large) / (1.0 + draws);
+}
+
+}  // namespace cathlab

@@ -1,0 +1,31 @@
+// Whether one model is better than another on rows that neither was fitted to, by more than chance allows.
+#pragma once
+
+#include <cstdint>
+
+#include "explain/rig.h"
+
+namespace cathlab {
+
+/// What an error costs: Huber's loss [huber1964] of the error over the column's scale, quadratic up to three scales and
+/// straight beyond, so that a few wild rows do not decide.
+struct LossScale {
+    std::vector<double> of_column;  ///< > 0
+    double cost(std::size_t column, double error) const;
+    /// An error whose square costs the same.
+    double softened(std::size_t column, double error) const;
+};
+
+/// Robust scales (1.4826 median absolute value) of the rows that the fit sees, at least `least` (the declared noise).
+LossScale loss_scale(const Columns& residual, const Split& split, double least);
+
+/// Mean cost of a known row of a part.
+double mean_cost(const Columns& residual, const Split& split, std::uint8_t part, const LossScale& scale);
+
+/// How often chance alone would give the held-out blocks a gain at least as large as they have from `before` to
+/// `after`: their signs are flipped at random, whole blocks at a time, since neighbours know of one another
+/// [edgington1995]. 1 / 10001 at least.
+double gain_by_chance(const Columns& before, const Columns& after, const Split& split, const LossScale& scale,
+                      std::uint64_t seed);
+
+}  // namespace cathlab

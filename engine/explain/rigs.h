@@ -1,0 +1,38 @@
+// The rigs, one a kind of data, and what they share.
+#pragma once
+
+#include "explain/rig.h"
+
+namespace cathlab {
+
+std::unique_ptr<Rig> make_catheter_rig(const Dataset& data, const Split& split);
+std::unique_ptr<Rig> make_tendon_rig(const Dataset& data, const Split& split);
+std::unique_ptr<Rig> make_heart_rig(const Dataset& data, const Split& split);
+std::unique_ptr<Rig> make_tension_rig(const Dataset& data, const Split& split);
+
+/// The effects of one recording, from its first row on, asked as a step asks them.
+class RigEffects {
+public:
+    explicit RigEffects(std::span<const EffectTrial> trials);
+
+    /// Begins a recording: every effect is made anew.
+    void begin_run(Index run);
+    /// Goes on to a row's time.
+    void next_row(double time_s);
+    EffectContext& context() { return context_; }
+
+    void actuation(Actuation& act);
+    /// What the drive asks of a support that moves in full, and of the heart.
+    Drive drive();
+    void measure(Channels& channels);
+    bool uses(unsigned hooks) const;
+
+private:
+    std::span<const EffectTrial> trials_;
+    std::vector<std::unique_ptr<Effect>> made_;
+    EffectContext context_;
+    bool first_ = true;
+    double last_s_ = 0.0;
+};
+
+}  // namespace cathlab
