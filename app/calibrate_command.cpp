@@ -26,6 +26,7 @@ struct CommonOptions {
 struct WallOptions : CommonOptions {
     std::vector<std::string> free;
     std::string stress = "hoop";
+    std::string rig = "scenes/rigs/stress_strain.toml";
     std::string range;
     int polish = WallSearch{}.polish_evaluations;
     ContactCheck contact;
@@ -66,6 +67,18 @@ std::string best_text(const char* what, double value, const char* unit) {
     return std::string(what) + " " + plain_number(value, 3) + " " + unit + " so far";
 }
 
+// Stations stand in an anatomy, which may have to be built first.
+WallRig read_rig(const SceneSpec& scene, int threads, const AppContext& context) {
+    catch_stop_signals();
+    Progress progress("building");
+    WallRig rig = wall_rig(scene, {context.cache_folder, threads, [&](double fraction, std::string_view what) {
+                                       if (stop_wanted()) throw UserError("stopped while the anatomy was being built");
+                                       progress.update(fraction, std::string(what));
+                                   }});
+    progress.end();
+    return rig;
+}
+
 void calibrate(const WallOptions& options, AppContext& context) {
     require_finite(options);
     WallSearch search;
@@ -75,11 +88,12 @@ void calibrate(const WallOptions& options, AppContext& context) {
         const auto [low, high] = parse_range("--range", options.range);
         reference = within(reference, low, high);
     }
-    const std::string rig = find_scene("scenes/rigs/stress_strain.toml", context.data_root);
-    search.rig = pressure_rig(load_scene(rig, {}, context.data_root));
+    const std::string rig = find_scene(options.rig, context.data_root);
+    search.rig = read_rig(load_scene(rig, {}, context.data_root), options.swarm.threads, context);
     search.rig.stress = options.stress == "paper"     ? RigStress::paper
                         : options.stress == "nominal" ? RigStress::nominal
                                                       : RigStress::hoop;
+    check_against(reference, search.rig);
     search.scene = load_scene(options.scene.empty() ? rig : find_scene(options.scene, context.data_root),
                               options.overlays, context.data_root);
     const CalibrationOutput output(options.out, options.report);
@@ -105,8 +119,8 @@ void calibrate(const WallOptions& options, AppContext& context) {
     progress.end();
 
     const Page page = wall_page(reference, search, found, context.command_line);
-    std::printf("%s", table_text(page.tables[0]).c_str());
-    std::printf("%s", table_text(page.tables[1]).c_str());
+    const std::size_t told = search.rig.kind == RigKind::stations ? 4 : 2;  // the others are the report's
+    for (std::size_t k = 0; k < told; ++k) std::printf("%s", table_text(page.tables[k]).c_str());
     output.write(found.overlay,
                  {"wall, from " + path_for_manifest(options.reference, context.data_root),
                   "RMSE " + plain_number(100.0 * found.figures.rmse, 3) + " % strain, maximum " +
@@ -218,6 +232,12 @@ void add_calibrate_command(CLI::App& app, AppContext& context) {
             "what the reference's stress is: hoop (true, in the wall), nominal (by the section at rest), paper "
             "(a radial traction F / A)")
         ->check(CLI::IsMember({"hoop", "nominal", "paper"}))
+        ->capture_default_str();
+    wall_command
+        ->add_option(
+            "--rig", wall->rig,
+            "a scene whose [rig] says what is loaded: scenes/rigs/ has a tube (the default), aorta, ring, strip "
+            "and block")
         ->capture_default_str();
     wall_command->add_option("--range", wall->range, "LOW:HIGH, kPa: only these rows of the reference");
     wall_command->add_option("--polish", wall->polish, "curves of the local search after the swarm; 0 = none")

@@ -1,7 +1,10 @@
 #include "calibrate/report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "calibrate/stations.h"
 
 namespace cathlab {
 namespace {
@@ -56,8 +59,12 @@ PageTable swarm_table(const SwarmOptions& swarm, int runs, bool stopped) {
              {"simulations in all", std::to_string(runs)}}};
 }
 
-std::string stress_text(RigStress stress) {
-    switch (stress) {
+std::string stress_text(const WallRig& rig) {
+    if (!rig.round())
+        return rig.stress == RigStress::hoop
+                   ? "The stress is the true one, on the section under load (constant volume)."
+                   : "The stress is the force over the section at rest.";
+    switch (rig.stress) {
         case RigStress::hoop:
             return "The stress is the true one in the wall, on its section under load: a pressure p = sigma t / r "
                    "pushes, "
@@ -68,6 +75,59 @@ std::string stress_text(RigStress stress) {
     }
     return "The stress is a radial traction, sigma = F / A as it stands: the wall itself carries r0 / t0 times as "
            "much.";
+}
+
+std::string rig_text(const WallRig& rig) {
+    const auto mm = [](double value) { return plain_number(value) + " mm"; };
+    switch (rig.kind) {
+        case RigKind::tube:
+            return "a tube of radius " + mm(rig.shape.radius_mm) + ", length " + mm(rig.shape.length_mm) +
+                   " and thickness " + mm(rig.thickness_mm) +
+                   ", held at both ends; strain (r - r0) / r0 of its middle third.";
+        case RigKind::ring:
+            return "a ring of radius " + mm(rig.shape.radius_mm) + ", width " + mm(rig.shape.length_mm) +
+                   " and thickness " + mm(rig.thickness_mm) + ", its ends free; strain (r - r0) / r0.";
+        case RigKind::strip:
+            return "a strip " + mm(rig.length_mm) + " long, " + mm(rig.width_mm) + " wide and " + mm(rig.thickness_mm) +
+                   " thick, held at one end and pulled at the other; strain along the pull of "
+                   "its middle third.";
+        case RigKind::block:
+            return "a sheet " + mm(rig.length_mm) + " long, " + mm(rig.width_mm) + " wide and " + mm(rig.thickness_mm) +
+                   " thick, which smooth plates and guides keep flat and even; strain along "
+                   "the load.";
+        case RigKind::stations: break;
+    }
+    return std::to_string(rig.stations->stations.size()) + " stations of the anatomy '" + rig.stations->anatomy +
+           "'; at each the wall is pushed away from the centre-line over two radii of the lumen to either side, and "
+           "the "
+           "strain (r - r0) / r0 is read half a radius to either side.";
+}
+
+PageTable station_table(const WallRig& rig, const WallCalibration& found) {
+    PageTable out{"Stations, % strain", {"", "region", "radius, mm", "RMSE first guess", "RMSE", "maximum"}, {}};
+    for (std::size_t g = 0; g < found.gauges.size(); ++g) {
+        const Station& station = rig.stations->stations[g];
+        const GaugeCurve& gauge = found.gauges[g];
+        out.rows.push_back({gauge.name, station.region, plain_number(station.radius_mm),
+                            figure(percent * gauge.figures_first.rmse), figure(percent * gauge.figures.rmse),
+                            figure(percent * gauge.figures.maximum)});
+    }
+    return out;
+}
+
+PageTable strain_table(const StressStrain& reference, const WallCalibration& found) {
+    constexpr std::size_t most_rows = 30;
+    PageTable out{"Strain at the stations, %", {"stress, kPa", "reference"}, {}};
+    for (const GaugeCurve& gauge : found.gauges) out.header.push_back(gauge.name);
+    const std::size_t n = reference.strain.size(), rows = std::min(n, most_rows);
+    for (std::size_t k = 0; k < rows; ++k) {
+        const std::size_t i = rows == 1 ? 0 : k * (n - 1) / (rows - 1);
+        std::vector<std::string>& row = out.rows.emplace_back();
+        row.push_back(plain_number(reference.stress_kpa[i]));
+        row.push_back(figure(percent * reference.strain[i]));
+        for (const GaugeCurve& gauge : found.gauges) row.push_back(figure(percent * gauge.strain[i]));
+    }
+    return out;
 }
 
 }  // namespace
@@ -92,11 +152,8 @@ Page wall_page(const StressStrain& reference, const WallSearch& search, const Wa
                const std::string& command) {
     Page page;
     page.title = "Calibration of the wall";
-    page.paragraphs.push_back(
-        "Reference: " + reference.file + ", " + std::to_string(reference.strain.size()) +
-        " rows. Rig: a tube of radius " + plain_number(search.rig.shape.radius_mm) + " mm, length " +
-        plain_number(search.rig.shape.length_mm) + " mm and thickness " + plain_number(search.rig.thickness_mm) +
-        " mm, held at both ends; strain (r - r0) / r0 of its middle third. " + stress_text(search.rig.stress));
+    page.paragraphs.push_back("Reference: " + reference.file + ", " + std::to_string(reference.strain.size()) +
+                              " rows. Rig: " + rig_text(search.rig) + " " + stress_text(search.rig));
     if (found.stopped) page.paragraphs.emplace_back("The search was stopped; this is the best that it had found.");
     page.tables.push_back(figure_table(found.figures_first, found.figures, "% strain", percent));
     PageTable searched{"What was searched", {"", "from", "to", "first guess", "best"}, {}};
@@ -106,27 +163,37 @@ Page wall_page(const StressStrain& reference, const WallSearch& search, const Wa
                                  plain_number(found.values[k].second, 5)});
     page.tables.push_back(searched);
 
-    Plot curve{.title = "Strain over stress", .x_label = "stress, kPa", .y_label = "strain, %", .curves = {}};
-    const auto add = [&](Plot& plot, const char* label, std::vector<double> y, CurveStyle style, bool line) {
-        plot.curves.push_back({.label = label,
-                               .x = reference.stress_kpa,
-                               .y = std::move(y),
-                               .style = style,
-                               .marks = !line,
-                               .line = line});
-    };
-    add(curve, "reference", scaled(reference.strain, percent), CurveStyle::reference, false);
-    add(curve, "first guess", scaled(found.strain_first, percent), CurveStyle::first, true);
-    add(curve, "best", scaled(found.strain, percent), CurveStyle::best, true);
-    Plot error{.title = "Error over stress",
-               .x_label = "stress, kPa",
-               .y_label = "simulated - reference, % strain",
-               .curves = {},
-               .zero_line = true};
-    add(error, "first guess", differences(found.strain_first, reference.strain, percent), CurveStyle::first, true);
-    add(error, "best", differences(found.strain, reference.strain, percent), CurveStyle::best, true);
-    error.height = 300;
-    page.plots = {curve, error, swarm_plot(found.best_history, "RMSE, % strain", percent)};
+    if (search.rig.kind == RigKind::stations) {
+        page.tables.push_back(station_table(search.rig, found));
+        page.tables.push_back(strain_table(reference, found));
+    }
+    for (const GaugeCurve& gauge : found.gauges) {
+        const std::string where = found.gauges.size() > 1 ? ", " + gauge.name : "";
+        Plot curve{
+            .title = "Strain over stress" + where, .x_label = "stress, kPa", .y_label = "strain, %", .curves = {}};
+        const auto add = [&](Plot& plot, const char* label, std::vector<double> y, CurveStyle style, bool line) {
+            plot.curves.push_back({.label = label,
+                                   .x = reference.stress_kpa,
+                                   .y = std::move(y),
+                                   .style = style,
+                                   .marks = !line,
+                                   .line = line});
+        };
+        add(curve, "reference", scaled(reference.strain, percent), CurveStyle::reference, false);
+        add(curve, "first guess", scaled(gauge.strain_first, percent), CurveStyle::first, true);
+        add(curve, "best", scaled(gauge.strain, percent), CurveStyle::best, true);
+        Plot error{.title = "Error over stress" + where,
+                   .x_label = "stress, kPa",
+                   .y_label = "simulated - reference, % strain",
+                   .curves = {},
+                   .zero_line = true};
+        add(error, "first guess", differences(gauge.strain_first, reference.strain, percent), CurveStyle::first, true);
+        add(error, "best", differences(gauge.strain, reference.strain, percent), CurveStyle::best, true);
+        error.height = 300;
+        page.plots.push_back(std::move(curve));
+        page.plots.push_back(std::move(error));
+    }
+    page.plots.push_back(swarm_plot(found.best_history, "RMSE, % strain", percent));
     page.tables.push_back(swarm_table(search.swarm, found.evaluations, found.stopped));
     page.command = command;
     return page;

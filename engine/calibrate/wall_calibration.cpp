@@ -12,17 +12,13 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-bool acts_on_wall(const EffectInfo& info) {
-    return !info.for_tests && (info.hooks & (hook_material | hook_constraint | hook_force)) != 0;
-}
-
 void check_free(const std::vector<Bound>& free) {
     const std::vector<std::string> known = wall_paths();
     for (std::size_t i = 0; i < free.size(); ++i) {
         const Bound& bound = free[i];
         find_named_parameter(bound.name);  // a path that no scene has is told with the nearest that one has
         if (std::find(known.begin(), known.end(), bound.name) == known.end())
-            throw UserError("'" + bound.name + "' does not change a tube under load; what does: " + comma_list(known) +
+            throw UserError("'" + bound.name + "' does not change a wall under load; what does: " + comma_list(known) +
                             did_you_mean(bound.name, known));
         named_bound(bound.name, bound.lower, bound.upper);
         for (std::size_t k = 0; k < i; ++k)
@@ -30,66 +26,90 @@ void check_free(const std::vector<Bound>& free) {
     }
 }
 
-// The rig's strain at each row.  A recording of thousands of rows does not need as many rests: then the curve between
-// forty of them is taken.
-std::vector<double> strain_at_rows(const StressStrain& reference, const PressureRig& rig, const SceneSpec& scene,
-                                   const std::function<bool()>& stop) {
+// Loads from rest outwards: those that press and those that pull are two ways.
+std::vector<std::vector<double>> strain_at(const std::vector<double>& levels, const WallRig& rig,
+                                           const SceneSpec& scene, const std::function<bool()>& stop) {
+    const auto first_pull = std::lower_bound(levels.begin(), levels.end(), 0.0);
+    std::vector<double> press(levels.begin(), first_pull);
+    std::vector<double> pull(first_pull, levels.end());
+    std::reverse(press.begin(), press.end());
+    std::vector<std::vector<double>> out(gauge_names(rig).size());
+    for (const auto* way : {&press, &pull}) {
+        if (way->empty()) continue;
+        const std::vector<std::vector<double>> strain = rig_strain(rig, scene, *way, stop);
+        for (std::size_t g = 0; g < out.size(); ++g) {
+            out[g].insert(out[g].end(), strain[g].begin(), strain[g].end());
+            if (way == &press) std::reverse(out[g].begin(), out[g].end());
+        }
+    }
+    return out;
+}
+
+// The rig's strain at each row, gauge by gauge.  A recording of thousands of rows does not need as many rests: then the
+// curve between forty of them is taken.
+std::vector<std::vector<double>> strain_at_rows(const StressStrain& reference, const WallRig& rig,
+                                                const SceneSpec& scene, const std::function<bool()>& stop) {
     constexpr std::size_t most_levels = 60, levels_instead = 41;
     std::vector<double> levels = reference.stress_kpa;
     std::sort(levels.begin(), levels.end());
     levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
     if (levels.size() > most_levels) {
-        const double low = levels.front(), high = levels.back();
-        levels.resize(levels_instead);
+        // As the rows lie: where a curve is flat they stand near to each other.
+        std::vector<double> some;
         for (std::size_t i = 0; i < levels_instead; ++i)
-            levels[i] = low + (high - low) * static_cast<double>(i) / static_cast<double>(levels_instead - 1);
-        levels.back() = high;
+            some.push_back(levels[i * (levels.size() - 1) / (levels_instead - 1)]);
+        levels = std::move(some);
     }
-    const std::vector<double> strain = pressure_strain(rig, scene, levels, stop);
-    std::vector<double> out;
-    for (const double stress : reference.stress_kpa) {
-        const auto it = std::lower_bound(levels.begin(), levels.end(), stress);
-        const auto above = static_cast<std::size_t>(it - levels.begin());
-        const std::size_t below = above == 0 || levels[above] == stress ? above : above - 1;
-        const double t = above == below ? 0.0 : (stress - levels[below]) / (levels[above] - levels[below]);
-        out.push_back(strain[below] + t * (strain[above] - strain[below]));
+    std::vector<std::vector<double>> out;
+    for (const std::vector<double>& strain : strain_at(levels, rig, scene, stop)) {
+        std::vector<double>& rows = out.emplace_back();
+        for (const double stress : reference.stress_kpa) {
+            const auto it = std::lower_bound(levels.begin(), levels.end(), stress);
+            const auto above = static_cast<std::size_t>(it - levels.begin());
+            const std::size_t below = above == 0 || levels[above] == stress ? above : above - 1;
+            const double t = above == below ? 0.0 : (stress - levels[below]) / (levels[above] - levels[below]);
+            rows.push_back(strain[below] + t * (strain[above] - strain[below]));
+        }
     }
     return out;
 }
 
-void check_pushes(const StressStrain& reference) {
-    for (std::size_t i = 0; i < reference.stress_kpa.size(); ++i)
-        if (reference.stress_kpa[i] < 0.0)
-            throw UserError({reference.file.empty() ? "the reference" : reference.file,
-                             i < reference.line.size() ? reference.line[i] : 0, "stress"},
-                            "found " + std::to_string(reference.stress_kpa[i]) +
-                                " kPa; the rig stretches the wall, 0 or more is wanted");
+std::vector<double> misses(const std::vector<std::vector<double>>& strain, const StressStrain& reference) {
+    std::vector<double> out;
+    for (const std::vector<double>& curve : strain)
+        for (std::size_t i = 0; i < curve.size(); ++i) out.push_back(curve[i] - reference.strain[i]);
+    return out;
 }
 
-std::vector<double> strain_or_nan(const StressStrain& reference, const WallSearch& search, const SceneSpec& scene) {
+std::vector<std::vector<double>> strain_or_nan(const StressStrain& reference, const WallSearch& search,
+                                               const SceneSpec& scene) {
     try {
         return strain_at_rows(reference, search.rig, scene, search.stop);
     } catch (const UserError&) {
-        return std::vector<double>(reference.strain.size(), std::numeric_limits<double>::quiet_NaN());
+        return std::vector(gauge_names(search.rig).size(),
+                           std::vector<double>(reference.strain.size(), std::numeric_limits<double>::quiet_NaN()));
     }
 }
 
 // Where nothing worked the reason is that of the scene's own numbers, or of the middle of the bounds.
 [[noreturn]] void tell_why(const WallSearch& search, const SceneSpec& scene) {
-    pressure_strain(search.rig, scene, std::vector<double>{0.0});
-    throw UserError("the tube came to rest nowhere in the ranges given: it is too soft for the reference's stress");
+    rig_strain(search.rig, scene, std::vector<double>{0.0});
+    throw UserError("the " + std::string(rig_name(search.rig.kind)) +
+                    " came to rest nowhere in the ranges given: it is too soft for the reference's stress");
 }
 
 }  // namespace
 
-std::vector<Bound> default_wall_bounds(RigStress stress) {
+std::vector<Bound> default_wall_bounds(const SceneWall& wall, RigStress stress) {
     const bool pushed_hard = stress == RigStress::paper;
+    if (wall.form == "elastic")
+        return {named_bound("wall.young_kpa", pushed_hard ? 500.0 : 50.0, pushed_hard ? 30000.0 : 3000.0)};
     return {named_bound("wall.cluster_spacing_mm", 4.0, 14.0), named_bound("wall.cluster_radius_mm", 6.0, 24.0),
             named_bound("wall.cluster_stiffness", pushed_hard ? 0.8 : 0.3, pushed_hard ? 0.999 : 0.97)};
 }
 
 std::vector<std::string> wall_paths() {
-    // What a tube at rest, with nothing around it and no device, does not feel.
+    // What a wall at rest, with nothing around it and no device, does not feel.
     const std::vector<std::string> unfelt{"wall.damping_per_s", "wall.surrounding_kpa_per_mm",
                                           "wall.surrounding_kpa_s_per_mm", "wall.max_speed_mm_s", "wall.friction"};
     std::vector<std::string> out;
@@ -97,16 +117,31 @@ std::vector<std::string> wall_paths() {
         if (named.path.starts_with("wall.") && std::find(unfelt.begin(), unfelt.end(), named.path) == unfelt.end())
             out.push_back(named.path);
         for (const EffectInfo& info : effect_table())
-            if (acts_on_wall(info) && named.path.starts_with("effects." + std::string(info.name) + "."))
+            if (!info.for_tests && makes_the_wall(info) &&
+                named.path.starts_with("effects." + std::string(info.name) + "."))
                 out.push_back(named.path);
     }
     return out;
 }
 
-double strain_error(const StressStrain& reference, const PressureRig& rig, const SceneSpec& scene,
+void check_against(const StressStrain& reference, const WallRig& rig) {
+    check(rig);
+    if (rig.kind == RigKind::block) return;
+    for (std::size_t i = 0; i < reference.stress_kpa.size(); ++i)
+        if (reference.stress_kpa[i] < 0.0)
+            throw UserError(
+                {reference.file.empty() ? "the reference" : reference.file,
+                 i < reference.line.size() ? reference.line[i] : 0, "stress"},
+                "found " + std::to_string(reference.stress_kpa[i]) + " kPa, a compression, under which a thin " +
+                    (rig.round() ? "round wall" : "strip") +
+                    " folds at once: 0 or more is wanted here, or a rig of kind block, which its guides keep "
+                    "flat (--rig scenes/rigs/block.toml)");
+}
+
+double strain_error(const StressStrain& reference, const WallRig& rig, const SceneSpec& scene,
                     const std::function<bool()>& stop) {
     try {
-        const double error = figures_of(strain_at_rows(reference, rig, scene, stop), reference.strain).rmse;
+        const double error = figures_of(misses(strain_at_rows(reference, rig, scene, stop), reference)).rmse;
         return std::isfinite(error) ? error : infinite;
     } catch (const UserError&) {
         return infinite;  // clusters that leave a particle alone: a bad place of the range
@@ -115,9 +150,9 @@ double strain_error(const StressStrain& reference, const PressureRig& rig, const
 
 WallCalibration calibrate_wall(const StressStrain& reference, const WallSearch& wanted) {
     check(reference);
-    check_pushes(reference);
+    check_against(reference, wanted.rig);
     WallSearch search = wanted;
-    if (search.free.empty()) search.free = default_wall_bounds(search.rig.stress);
+    if (search.free.empty()) search.free = default_wall_bounds(search.scene.wall, search.rig.stress);
     check_free(search.free);
     const auto scene_at = [&](std::span<const double> x) {
         SceneSpec scene = search.scene;
@@ -137,8 +172,8 @@ WallCalibration calibrate_wall(const StressStrain& reference, const WallSearch& 
         return strain_error(reference, search.rig, scene_at(x), search.stop);
     };
 
-    out.strain_first = strain_or_nan(reference, search, search.scene);
-    out.figures_first = figures_of(out.strain_first, reference.strain);
+    const auto first = strain_or_nan(reference, search, search.scene);
+    out.figures_first = figures_of(misses(first, reference));
     Result best = minimise_swarm(problem, search.swarm);
     out.best_history = best.best_history;
     out.stopped = best.stopped;
@@ -168,8 +203,12 @@ WallCalibration calibrate_wall(const StressStrain& reference, const WallSearch& 
         paths.push_back(search.free[k].name);
         out.values.emplace_back(search.free[k].name, best.best[k]);
     }
-    out.strain = strain_at_rows(reference, search.rig, scene_at(best.best), {});
-    out.figures = figures_of(out.strain, reference.strain);
+    const auto strain = strain_at_rows(reference, search.rig, scene_at(best.best), {});
+    out.figures = figures_of(misses(strain, reference));
+    const std::vector<std::string> names = gauge_names(search.rig);
+    for (std::size_t g = 0; g < names.size(); ++g)
+        out.gauges.push_back({names[g], first[g], strain[g], figures_of(first[g], reference.strain),
+                              figures_of(strain[g], reference.strain)});
     out.overlay = overlay_text(paths, best.best);
     return out;
 }

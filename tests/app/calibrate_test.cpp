@@ -102,7 +102,7 @@ TEST(Calibrate, WhatIsWrongIsOneSentenceAndLeavesNothing) {
     refused("wall " + fine + quick(folder) + " --free wall.cluster_stiffness=0.9:0.4", 2, "turned round");
     refused("wall " + fine + quick(folder) + " --free wall.cluster_stiffness=0.4:nan", 2, "two numbers");
     refused("wall " + fine + quick(folder) + " --free wall.cluster_stiffnes=0.4:0.9", 2, "did you mean");
-    refused("wall " + fine + quick(folder) + " --free wall.friction=0.1:0.9", 1, "does not change a tube");
+    refused("wall " + fine + quick(folder) + " --free wall.friction=0.1:0.9", 1, "does not change a wall");
     refused("wall " + fine + quick(folder) + " --free wall.cluster_radius_mm=0.5:1", 1, "radius");
     refused("wall " + fine + quick(folder) + " --range 100:200", 1, "at least 3");
     refused("wall " + fine + quick(folder) + " --range 100", 2, "LOW:HIGH");
