@@ -10,16 +10,17 @@ namespace cathlab {
 
 struct PageTable {
     std::string caption;
-    std::vector<std::string> header;             ///< one a column
+    std::vector<std::string> header;             ///< one a column; no header where all are empty
     std::vector<std::vector<std::string>> rows;  ///< the first cell of a row names it
 };
 
 struct Page {
     std::string title;
     std::vector<std::string> paragraphs;  ///< below the title
-    std::vector<PageTable> tables;
+    std::vector<PageTable> tables;        ///< above the plots: what was found; small ones stand side by side
     std::vector<Plot> plots;
-    std::string command;  ///< what made the page
+    std::vector<PageTable> details;  ///< below the plots
+    std::string command;             ///< what made the page
 };
 
 /// Every text is escaped.  The same page gives the same bytes.

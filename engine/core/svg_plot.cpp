@@ -11,8 +11,9 @@
 namespace cathlab {
 namespace {
 
-constexpr double margin_left = 74.0, margin_right = 16.0, margin_top = 52.0, margin_bottom = 52.0;
-constexpr double legend_step = 150.0;
+constexpr double least_margin_left = 74.0, margin_right = 16.0, margin_top = 52.0, margin_bottom = 52.0;
+constexpr int x_steps = 8;
+constexpr double letter = 7.6;  // an average one of a wide 12 px font; a digit is as wide
 
 struct Style {
     const char* colour;
@@ -69,6 +70,42 @@ double shown_y(const Plot& plot, double y) {
     return y > 0.0 ? std::log10(y) : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// 1, 2 or 5 times a power of ten, about `count` of which make up the range.
+double round_step(double low, double high, int count) {
+    const double raw = (high - low) / count;
+    const double power = std::pow(10.0, std::floor(std::log10(raw)));
+    for (const double nice : {1.0, 2.0, 5.0})
+        if (nice * power >= raw * (1.0 - 1e-9)) return nice * power;
+    return 10.0 * power;
+}
+
+std::vector<double> multiples(double step, double low, double high) {
+    std::vector<double> out;
+    const double slack = 1e-9 * step;
+    constexpr double most = 1e15;  // beyond, k + 1 is k
+    if (!(std::max(std::fabs(low), std::fabs(high)) < most * step)) return out;
+    for (double k = std::ceil((low - slack) / step); k * step <= high + slack; k += 1.0) out.push_back(k * step);
+    return out;
+}
+
+/// Steps of the x axis: whole ones where every x is whole, a generation say.
+double x_step(const Plot& plot, const Axis& x) {
+    const double step = round_step(x.low, x.high, x_steps);
+    for (const PlotCurve& curve : plot.curves)
+        for (const double value : curve.x)
+            if (std::isfinite(value) && value != std::floor(value)) return step;
+    return std::max(step, 1.0);
+}
+
+/// An end that lies just short of a tick goes there, so that the tick is written.
+void reach_ticks(Axis& x, double step) {
+    constexpr double near = 0.04;
+    const double room = near * (x.high - x.low);
+    const double before = std::floor(x.low / step) * step, after = std::ceil(x.high / step) * step;
+    if (x.low - before <= room) x.low = before;
+    if (after - x.high <= room) x.high = after;
+}
+
 // The box of all points; false where there is none.
 bool find_box(const Plot& plot, Axis& x, Axis& y) {
     constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -90,13 +127,18 @@ bool find_box(const Plot& plot, Axis& x, Axis& y) {
         y.low = std::min(y.low, 0.0);
         y.high = std::max(y.high, 0.0);
     }
-    const auto widen = [](Axis& axis, double share) {
+    // Numbers that differ by their rounding alone are one number.
+    const auto one_number = [](const Axis& axis) {
+        return axis.high - axis.low <= 1e-12 * std::max(std::fabs(axis.low), std::fabs(axis.high));
+    };
+    const auto widen = [&](Axis& axis, double share) {
         const double room =
-            axis.high > axis.low ? share * (axis.high - axis.low) : std::max(1e-9, 0.1 * std::fabs(axis.low));
+            one_number(axis) ? std::max(1e-9, 0.1 * std::fabs(axis.low)) : share * (axis.high - axis.low);
         axis.low -= room;
         axis.high += room;
     };
-    if (!(x.high > x.low)) widen(x, 0.0);
+    if (one_number(x)) widen(x, 0.0);
+    reach_ticks(x, x_step(plot, x));
     widen(y, 0.05);
     return true;
 }
@@ -117,17 +159,41 @@ std::vector<double> ticks_of(const Axis& axis, bool logarithmic) {
     return out;
 }
 
-std::string axes(const Plot& plot, const Axis& x, const Axis& y) {
+struct Tick {
+    double at = 0.0;  // along its axis
+    std::string text;
+};
+
+/// With as many digits as tell a tick from its neighbour, and not fewer than four.
+std::vector<Tick> written(const std::vector<double>& ticks, bool logarithmic) {
+    std::vector<double> values = ticks;
+    if (logarithmic)
+        for (double& value : values) value = std::pow(10.0, value);
+    double largest = 0.0, step = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        largest = std::max(largest, std::fabs(values[i]));
+        if (i > 0) step = std::min(step, values[i] - values[i - 1]);
+    }
+    constexpr double least = 4.0, most = 12.0;
+    const double wanted =
+        largest > 0.0 ? std::floor(std::log10(largest)) - std::floor(std::log10(step) + 1e-9) + 1.0 : 0.0;
+    const int digits = static_cast<int>(std::clamp(wanted, least, most));
+    std::vector<Tick> out;
+    for (std::size_t i = 0; i < ticks.size(); ++i) out.push_back({ticks[i], plain_number(values[i], digits)});
+    return out;
+}
+
+std::string axes(const Plot& plot, const Axis& x, const Axis& y, const std::vector<Tick>& y_ticks) {
     std::string out;
     const std::string grid = "stroke=\"#d8d8d8\" stroke-width=\"1\"";
     constexpr double gap = 6.0, baseline = 4.0;
-    for (const double tick : round_ticks(x.low, x.high, 8)) {
-        out += line(x(tick), y.first, x(tick), y.last, grid);
-        out += text(x(tick), y.first + 3.0 * gap, "middle", plain_number(tick));
+    for (const Tick& tick : written(multiples(x_step(plot, x), x.low, x.high), false)) {
+        out += line(x(tick.at), y.first, x(tick.at), y.last, grid);
+        out += text(x(tick.at), y.first + 3.0 * gap, "middle", tick.text);
     }
-    for (const double tick : ticks_of(y, plot.log_y)) {
-        out += line(x.first, y(tick), x.last, y(tick), grid);
-        out += text(x.first - gap, y(tick) + baseline, "end", plain_number(plot.log_y ? std::pow(10.0, tick) : tick));
+    for (const Tick& tick : y_ticks) {
+        out += line(x.first, y(tick.at), x.last, y(tick.at), grid);
+        out += text(x.first - gap, y(tick.at) + baseline, "end", tick.text);
     }
     const std::string frame = "stroke=\"#404040\" stroke-width=\"1\"";
     if (plot.zero_line && !plot.log_y) out += line(x.first, y(0.0), x.last, y(0.0), frame);
@@ -162,9 +228,15 @@ std::string draw(const Plot& plot, const PlotCurve& curve, const Axis& x, const 
     return out + marks;
 }
 
+/// Characters of a UTF-8 text.
+std::size_t letters(const std::string& text) {
+    return static_cast<std::size_t>(std::count_if(
+        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
 std::string legend(const Plot& plot) {
     std::string out;
-    double at = margin_left;
+    double at = least_margin_left;
     constexpr double y = margin_top - 14.0, length = 26.0;
     for (const PlotCurve& curve : plot.curves) {
         if (curve.label.empty()) continue;
@@ -175,7 +247,8 @@ std::string legend(const Plot& plot) {
                 line(at, y, at + length, y, std::string("stroke=\"") + style.colour + "\" stroke-width=\"1.8\"" + dash);
         if (curve.marks || !curve.line) out += mark(at + 0.5 * length, y, style);
         out += text(at + length + 6.0, y + 4.0, "start", curve.label);
-        at += legend_step;
+        constexpr double gap = 30.0;
+        at += length + gap + letter * static_cast<double>(letters(curve.label));
     }
     return out;
 }
@@ -223,19 +296,8 @@ std::string plain_number(double value, int digits) {
 }
 
 std::vector<double> round_ticks(double low, double high, int count) {
-    std::vector<double> out;
-    if (!(high > low) || !std::isfinite(high - low) || count < 1) return out;
-    const double raw = (high - low) / count;
-    const double power = std::pow(10.0, std::floor(std::log10(raw)));
-    double step = 10.0 * power;
-    for (const double nice : {1.0, 2.0, 5.0})
-        if (nice * power >= raw * (1.0 - 1e-9)) {
-            step = nice * power;
-            break;
-        }
-    const double slack = 1e-9 * step;
-    for (double k = std::ceil((low - slack) / step); k * step <= high + slack; k += 1.0) out.push_back(k * step);
-    return out;
+    if (!(high > low) || !std::isfinite(high - low) || count < 1) return {};
+    return multiples(round_step(low, high, count), low, high);
 }
 
 std::string svg_plot(const Plot& plot) {
@@ -245,14 +307,18 @@ std::string svg_plot(const Plot& plot) {
                       "\" role=\"img\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#202020\">\n<title>" +
                       xml_escaped(plot.title) + "</title>\n";
     out += "<rect width=\"" + pixel(width) + "\" height=\"" + pixel(height) + "\" fill=\"#ffffff\"/>\n";
-    out += text(margin_left, 18.0, "start", plot.title, " font-weight=\"bold\" font-size=\"14\"");
+    out += text(least_margin_left, 18.0, "start", plot.title, " font-weight=\"bold\" font-size=\"14\"");
     Axis x, y;
     if (!find_box(plot, x, y)) return out + text(0.5 * width, 0.5 * height, "middle", "no points") + "</svg>\n";
-    x.first = margin_left;
+    const std::vector<Tick> y_ticks = written(ticks_of(y, plot.log_y), plot.log_y);
+    std::size_t longest = 0;
+    for (const Tick& tick : y_ticks) longest = std::max(longest, tick.text.size());
+    constexpr double y_name = 34.0;  // the axis' name and what is free round the numbers
+    x.first = std::max(least_margin_left, y_name + letter * static_cast<double>(longest));
     x.last = width - margin_right;
     y.first = height - margin_bottom;
     y.last = margin_top;
-    out += axes(plot, x, y);
+    out += axes(plot, x, y, y_ticks);
     for (const PlotCurve& curve : plot.curves) out += draw(plot, curve, x, y);
     return out + legend(plot) + "</svg>\n";
 }

@@ -36,6 +36,43 @@ TEST(SvgPlot, TicksAreRoundAndWithinTheirRange) {
     EXPECT_TRUE(round_ticks(0.0, INFINITY, 5).empty());
 }
 
+TEST(SvgPlot, CountsHaveWholeTicksAndAnEndShortOfATickReachesIt) {
+    const std::string counts = svg_plot(line_plot({5.0, 4.0, 3.0, 2.5, 2.2}));
+    EXPECT_NE(counts.find(">3</text>"), std::string::npos);
+    EXPECT_EQ(counts.find(">1.5</text>"), std::string::npos);
+    Plot beats = line_plot({5.0, 4.0, 3.0});
+    beats.curves[0].x = {0.02, 1.5, 2.98};
+    const std::string ends = svg_plot(beats);
+    EXPECT_NE(ends.find("x=\"74.0\" y=\"326.0\" text-anchor=\"middle\">0</text>"), std::string::npos);
+    EXPECT_NE(ends.find("x=\"704.0\" y=\"326.0\" text-anchor=\"middle\">3</text>"), std::string::npos);
+}
+
+TEST(SvgPlot, TicksOfNearlyEqualNumbersAreToldApartAndLeaveTheAxisItsName) {
+    Plot plot = line_plot({100.001, 100.002, 100.005});
+    std::string svg = svg_plot(plot);
+    for (const char* tick : {">100.001<", ">100.002<", ">100.005<"}) EXPECT_EQ(count(svg, tick), 1U) << tick;
+    plot = line_plot({0.0374999, 0.0374998});
+    plot.log_y = true;
+    svg = svg_plot(plot);
+    const auto tick = svg.find(">0.0374999<");
+    ASSERT_NE(tick, std::string::npos);
+    const double end = std::stod(svg.substr(svg.rfind("x=\"", tick) + 3));
+    EXPECT_GT(end - 7.6 * 9, 22.0);  // the name stands at 16 px and is 12 px high
+}
+
+TEST(SvgPlot, ALongNameInTheLegendKeepsItsRoom) {
+    const auto place_of = [](const std::string& svg, const std::string& name) {
+        const auto at = svg.rfind("x=\"", svg.find(">" + name + "<"));
+        return std::stod(svg.substr(at + 3));
+    };
+    Plot plot = line_plot({1.0, 2.0});
+    plot.curves.push_back(plot.curves[0]);
+    plot.curves[0].label = "thirty letters and a few over it";
+    plot.curves[1].label = "next";
+    const std::string svg = svg_plot(plot);
+    EXPECT_GT(place_of(svg, "next") - place_of(svg, plot.curves[0].label), 6.5 * 32);
+}
+
 TEST(SvgPlot, NumbersAreShort) {
     EXPECT_EQ(plain_number(0.25), "0.25");
     EXPECT_EQ(plain_number(580.0), "580");
@@ -73,6 +110,9 @@ TEST(SvgPlot, NothingOneValueAndLogarithmsAreDrawnToo) {
     EXPECT_NE(svg_plot(line_plot({std::nan("")})).find("no points"), std::string::npos);
     EXPECT_EQ(svg_plot(line_plot({3.0, 3.0})).find("nan"), std::string::npos);
     EXPECT_EQ(svg_plot(line_plot({0.0})).find("nan"), std::string::npos);
+    EXPECT_EQ(svg_plot(line_plot({0.1, std::nextafter(0.1, 1.0)})).find("nan"), std::string::npos);
+    EXPECT_TRUE(round_ticks(0.1, std::nextafter(0.1, 1.0), 6).empty());
+    EXPECT_TRUE(round_ticks(-1e308, 1e308, 6).size() < 20U);
     Plot logarithmic = line_plot({100.0, 1.0, 0.0, -1.0, 0.01});
     logarithmic.log_y = true;
     const std::string svg = svg_plot(logarithmic);
@@ -88,6 +128,7 @@ TEST(HtmlPage, HoldsEverythingAndAsksForNothing) {
                     .paragraphs = {"p & q"},
                     .tables = {{"t", {"", "a"}, {{"row", "1"}}}},
                     .plots = {line_plot({1.0, 2.0})},
+                    .details = {{"d", {"", ""}, {{"more", "2"}}}},
                     .command = "cathlab 'a b'"};
     const std::string html = html_page(page);
     EXPECT_EQ(html.rfind("<!DOCTYPE html>", 0), 0U);
@@ -96,5 +137,7 @@ TEST(HtmlPage, HoldsEverythingAndAsksForNothing) {
     EXPECT_NE(html.find("&lt;script&gt;"), std::string::npos);
     EXPECT_NE(html.find("<td>row</td><td>1</td>"), std::string::npos);
     EXPECT_NE(html.find("<svg"), std::string::npos);
+    EXPECT_LT(html.find("<svg"), html.find("<td>more</td>"));
+    EXPECT_EQ(html.find("<th></th><th></th>"), std::string::npos);
     EXPECT_EQ(html, html_page(page));
 }
