@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "plot_file.h"
 #include "rod_fixture.h"
 
 namespace cathlab {
@@ -53,7 +54,7 @@ TEST(Beam, TheWireStretchesByItsAxialStiffness) {
 // Tip of the elastica: a cantilever of length 1, EI = 1 under a dead load `p` across, by Runge-Kutta from the clamp
 // with the clamp's moment found by bisection so that the tip's is zero.  Angle a from the axis: a'' = -p cos a.
 Vec2 elastica_tip(double p) {
-    const int n = 4000;
+    const int n = 1000;
     const double ds = 1.0 / n;
     Vec2 tip = Vec2::Zero();
     double low = 0.0, high = p;
@@ -73,15 +74,19 @@ Vec2 elastica_tip(double p) {
 
 TEST(Beam, ALargeBendFollowsTheElastica) {
     const WireSpec spec = test::bmw();
-    for (const double p : {1.0, 2.0, 3.5}) {
+    Plot plot = test::theory_and_points("A cantilever under a dead load: drop of the tip", "P L2 / EI", "drop / L", 0.0,
+                                        4.0, [](double p) { return elastica_tip(p).y(); });
+    for (const double p : {0.5, 1.0, 2.0, 3.5}) {
         Rod rod(spec, {}, 150.0);
         const double arm = 150.0 - 0.5 * rod.link_length(0);
-        settle(rod, 0, Vec3(0.0, p * 75e3 / (arm * arm), 0.0), 0.2, 600);
+        settle(rod, 0, Vec3(0.0, p * 75e3 / (arm * arm), 0.0), 0.2, 250);
         const Vec2 expected = arm * elastica_tip(p);
         const Vec3 found = rod.link_pose(0).position;
         EXPECT_NEAR(found.y(), expected.y(), 0.01 * expected.y()) << "p = " << p;
         EXPECT_NEAR(arm - found.z(), arm - expected.x(), 0.02 * (arm - expected.x())) << "p = " << p;
+        test::add_point(plot, p, found.y() / arm);
     }
+    test::keep(plot, "cantilever");
 }
 
 TEST(Beam, ItBucklesAtEulersLoad) {
@@ -93,15 +98,23 @@ TEST(Beam, ItBucklesAtEulersLoad) {
         Rod rod(spec, {}, insertion);
         const double arm = insertion - 0.5 * rod.link_length(0);
         const double load = share * 9.8696 * ei / (4.0 * arm * arm);
-        settle(rod, 0, Vec3(0.1, 0.0, -load), 0.2, 3000);
+        settle(rod, 0, Vec3(0.1, 0.0, -load), 1.0, 600);
         return rod.link_pose(0).position.x();
     };
     // For a side load at the tip the growth is 3 (tan u - u) / u^3 with u = pi/2 sqrt(F / P).
     const double straight = sway(0.0);
-    for (const double share : {0.5, 0.9}) {
+    const auto growth = [](double share) {
         const double u = 1.5707963 * std::sqrt(share);
-        EXPECT_NEAR(sway(share) / straight, 3.0 * (std::tan(u) - u) / (u * u * u), 0.03 / (1.0 - share)) << share;
+        return share == 0.0 ? 1.0 : 3.0 * (std::tan(u) - u) / (u * u * u);
+    };
+    Plot plot = test::theory_and_points("A column below Euler's load: growth of a side load's drop",
+                                        "load / Euler's load", "drop / drop without load", 0.0, 0.92, growth);
+    for (const double share : {0.3, 0.5, 0.8, 0.9}) {
+        const double found = sway(share) / straight;
+        EXPECT_NEAR(found, growth(share), 0.03 / (1.0 - share)) << share;
+        test::add_point(plot, share, found);
     }
+    test::keep(plot, "buckling");
     EXPECT_GT(std::fabs(sway(1.03)), 100.0 * straight);
     EXPECT_LT(std::fabs(sway(0.97)), 60.0 * straight);
 }

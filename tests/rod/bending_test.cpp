@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/units.h"
+#include "plot_file.h"
 #include "rigid_guide.h"
 
 namespace cathlab {
@@ -90,10 +91,17 @@ TEST(Bending, AColumnBetweenWallsPressesOnThemAsTheBeamColumnDoes) {
     const double length = 150.0, room = 1.0;
     const WireSpec spec = test::amplatz(1.5);
     const double ei = 1850e3;
+    const auto load_of = [&](double share) { return share * 4.0 * units::pi * units::pi * ei / (length * length); };
+    const auto press_of = [&](double share) {
+        const double l = 0.5 * length, k = std::sqrt(load_of(share) / ei);
+        return 2.0 * load_of(share) * room / (l - 2.0 / k * std::tan(0.5 * k * l));
+    };
+    Plot plot = test::theory_and_points("A column between walls: force on the wall", "load / (4 pi2 EI / L2)",
+                                        "force, mN", 1.001, 4.0, press_of);
     for (const double share : {1.5, 2.25, 3.5}) {  // of 4 pi^2 EI / L^2
         GuidedWire wire(Rod(spec, {}, length + 0.75));
         wire.compliance = 1e-7;
-        const double load = share * 4.0 * units::pi * units::pi * ei / (length * length);
+        const double load = load_of(share);
         wire.walls = [&](const RodSample& sample, std::vector<Touch>& out) {
             out.push_back({-Vec3::UnitX(), room - sample.position.x()});
             out.push_back({Vec3::UnitX(), room + sample.position.x()});
@@ -114,11 +122,12 @@ TEST(Bending, AColumnBetweenWallsPressesOnThemAsTheBeamColumnDoes) {
         }
         for (std::size_t r = 0; r < wire.rows.size(); ++r)
             if (std::fabs(wire.rows[r].normal.x()) > 0.5 && wire.at[r].link > 3) press += wire.rows[r].multiplier;
-        const double l = 0.5 * length, k = std::sqrt(load / ei);
-        const double expected = 2.0 * load * room / (l - 2.0 / k * std::tan(0.5 * k * l));
+        const double expected = press_of(share);
+        test::add_point(plot, share, press);
         std::printf("between walls, P = %.2f x 4 pi^2 EI / L^2: %.3f mN of %.3f\n", share, press, expected);
         EXPECT_NEAR(press, expected, 0.03 * expected);
     }
+    test::keep(plot, "between-walls");
 }
 
 TEST(Bending, ACantileverRingsAtItsNaturalFrequency) {
@@ -133,12 +142,17 @@ TEST(Bending, ACantileverRingsAtItsNaturalFrequency) {
         test::settle(rod, 0, Vec3(0.005 * 3.0 * ei / (length * length), 0.0, 0.0), 0.5, 100);
         std::vector<double> crossings;
         double before = rod.tip().x();
+        const double first = before;
+        Plot plot = test::theory_and_points("A cantilever let go: its tip", "time, s", "tip / first tip", 0.0,
+                                            3.0 * period, [&](double t) { return std::cos(omega * t); });
         for (int i = 1; i < 3 * 1000; ++i) {
             test::substep(rod, h);
             const double now = rod.tip().x();
             if (before > 0.0 && now <= 0.0) crossings.push_back(h * (i - 1 + before / (before - now)));
             before = now;
+            if (i % 50 == 0) test::add_point(plot, h * i, now / first);
         }
+        test::keep(plot, "frequency");
         ASSERT_GE(crossings.size(), 3U);
         const double found = 0.5 * (crossings[2] - crossings[0]);
         std::printf("frequency: %.3f Hz of %.3f\n", 1.0 / found, 1.0 / period);

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/units.h"
+#include "plot_file.h"
 #include "rigid_guide.h"
 
 namespace cathlab {
@@ -20,6 +21,9 @@ TEST(Capstan, TheTensionGrowsByTheExponentialOfFrictionTimesAngle) {
     WireSpec spec = test::uniform_wire(0.01, 0.2, 1.0, 400.0);
     spec.sections[0].axial_stiffness_n = 5000.0;
     const double radius = 20.0, start = 20.0, load = 100.0;
+    Plot plot = test::theory_and_points("A wire drawn over half a cylinder: tension behind over tension before",
+                                        "coefficient of friction", "ratio", 0.0, 0.4,
+                                        [](double mu) { return std::exp(mu * units::pi); });
     for (const double angle : {0.5 * units::pi, units::pi})
         for (const double friction : angle > 2.0 ? std::vector{0.0, 0.1, 0.2, 0.4} : std::vector{0.3}) {
             // From the mouth straight up, round a cylinder about y at (-radius - r, ., start) by `angle`, straight on.
@@ -51,7 +55,9 @@ TEST(Capstan, TheTensionGrowsByTheExponentialOfFrictionTimesAngle) {
             std::printf("capstan: %.0f deg, mu %.1f: %.2f mN of %.2f, %+.2f %%\n", angle / units::deg, friction, mean,
                         expected, 100.0 * (mean / expected - 1.0));
             EXPECT_NEAR(mean, expected, 0.05 * expected);
+            if (angle > 2.0) test::add_point(plot, friction, mean / load);
         }
+    test::keep(plot, "capstan");
 }
 
 TEST(Helix, APressedWireInATubeCoilsAndPressesAsLubinskiSays) {
@@ -74,8 +80,11 @@ TEST(Helix, APressedWireInATubeCoilsAndPressesAsLubinskiSays) {
     for (int i = 0; i < 2000; ++i) wire.step(0.05, 0.0, 0.0, push);
     double press = 0.0, turned = 0.0, along = 0.0;
     Vec3 last = Vec3::Zero();
+    Plot plot = test::theory_and_points("A wire pressed in a tube: contact force along it", "place, mm", "force, mN/mm",
+                                        0.0, insertion, [&](double) { return force * force * room / (4.0 * ei); });
     for (std::size_t i = 0; i < wire.rows.size(); ++i) {
         const Vec3 p = wire.rod.link_pose(static_cast<std::size_t>(wire.rows[i].link)).position;
+        test::add_point(plot, p.z(), wire.rows[i].multiplier / 3.0);
         if (p.z() < 0.33 * insertion || p.z() > 0.67 * insertion) continue;
         press += wire.rows[i].multiplier;
         if (last.z() > 0.0) {
@@ -84,6 +93,7 @@ TEST(Helix, APressedWireInATubeCoilsAndPressesAsLubinskiSays) {
         }
         last = p;
     }
+    test::keep(plot, "helix");
     const double length = along + 3.0, found_pitch = 2.0 * units::pi * along / turned;
     const double expected = force * force * room / (4.0 * ei);
     std::printf("helix: pitch %.2f mm of %.2f, %.3f mN/mm of %.3f\n", found_pitch, pitch, press / length, expected);
@@ -109,13 +119,19 @@ TEST(Torque, FrictionWindsTheWireUpBeforeTheTipTurns) {
         return std::atan2(x.y(), x.x());
     };
     const double q = 2.0 * mu * load * radius / 2.5, expected = q * length * length / (2.0 * gj);
+    Plot plot =
+        test::theory_and_points("A wire turned against friction: its grip ahead of its tip", "turn of the grip, rad",
+                                "ahead, rad", 0.0, 6.0, [&](double a) { return std::min(a, expected); });
     double turned = 0.0, before = tip_angle();
     for (int i = 0; i < 400; ++i) {
         wire.step(0.005, 0.0, 2.0 * units::pi * 0.005);  // 360 deg/s
         const double now = tip_angle();
         turned += std::remainder(now - before, 2.0 * units::pi);
         before = now;
+        if (i % 4 == 0 && wire.rod.rotation_rad() < 6.0)
+            test::add_point(plot, wire.rod.rotation_rad(), wire.rod.rotation_rad() - turned);
     }
+    test::keep(plot, "wind-up");
     const double ahead = wire.rod.rotation_rad() - turned;
     std::printf("wind-up: %.4f rad of %.4f; torque %.1f of %.1f mN mm\n", ahead, expected,
                 wire.rod.sheath_torque_mn_mm(), q * length);
@@ -127,7 +143,7 @@ TEST(Torque, FrictionWindsTheWireUpBeforeTheTipTurns) {
 /// 0.
 double whipped_tip(double sheath, double length, double ei_k0_k_over_gj) {
     const auto at_sheath = [&](double tip) {
-        const int n = 4000;
+        const int n = 500;
         const double ds = length / n;
         double a = tip, slope = 0.0;
         for (int i = 0; i < n; ++i) {
@@ -146,6 +162,9 @@ TEST(Torque, AShapedWireInABendLagsAsThePendulumEquationSays) {
     // A wire with a rest curvature in a curved groove prefers one angle; turned away from it, it winds up.  A straight
     // wire in the same groove follows the sheath one to one.
     const double bend = 60.0, length = 120.0;
+    Plot plot = test::theory_and_points("A wire with a rest curvature in a bend: its tip", "turn of the grip, rad",
+                                        "turn of the tip, rad", 0.0, 2.0,
+                                        [&](double a) { return whipped_tip(a, length, 1.3 * 0.004 / bend); });
     for (const double rest : {0.0, 0.004}) {
         WireSpec spec = test::uniform_wire(75.0, 0.356, 2.0);
         spec.sections[0].rest_curvature_per_mm = rest;
@@ -179,8 +198,10 @@ TEST(Torque, AShapedWireInABendLagsAsThePendulumEquationSays) {
             std::printf("shaped in a bend, rest %.3f: sheath %.2f rad, tip %.4f of %.4f\n", rest, target, tip_angle(),
                         expected);
             EXPECT_NEAR(tip_angle(), expected, 0.03 * target);
+            if (rest > 0.0) test::add_point(plot, target, tip_angle());
         }
     }
+    test::keep(plot, "shaped-in-a-bend");
 }
 
 }  // namespace
