@@ -1,6 +1,8 @@
 #include "calibrate/report.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <numeric>
 
@@ -11,10 +13,16 @@ namespace {
 
 constexpr double percent = 100.0;
 
-// Three decimals of a millimetre or of a percent are as many as any measurement has.
+// Three decimals of a millimetre or of a percent are as many as any measurement has; always three, so that the points
+// of a column stand below each other.
 std::string figure(double value) {
-    constexpr double decimals = 1000.0;
-    return plain_number(std::round(value * decimals) / decimals, 6);
+    if (!std::isfinite(value)) return plain_number(value);
+    constexpr double half = 0.0005;
+    std::array<char, 400> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), std::fabs(value) < half ? 0.0 : value,
+                                   std::chars_format::fixed, 3)
+                         .ptr;
+    return {buffer.data(), end};
 }
 
 std::string plus_minus(double mean, double sd, double factor) {
@@ -36,7 +44,11 @@ std::vector<double> differences(std::span<const double> simulated, std::span<con
 Plot swarm_plot(const std::vector<double>& history, const std::string& label, double factor) {
     std::vector<double> generation(history.size());
     std::iota(generation.begin(), generation.end(), 0.0);
-    Plot plot{.title = "The swarm's path", .x_label = "generation", .y_label = label, .curves = {}, .log_y = true};
+    Plot plot{.title = "The swarm's path",
+              .x_label = "generation; 0 is where it began",
+              .y_label = label,
+              .curves = {},
+              .log_y = true};
     plot.curves.push_back({.label = "best so far",
                            .x = std::move(generation),
                            .y = scaled(history, factor),
@@ -67,8 +79,7 @@ std::string stress_text(const WallRig& rig) {
     switch (rig.stress) {
         case RigStress::hoop:
             return "The stress is the true one in the wall, on its section under load: a pressure p = sigma t / r "
-                   "pushes, "
-                   "with the radius and the thickness under load (thin wall of constant volume).";
+                   "pushes, with the radius and the thickness under load (thin wall of constant volume).";
         case RigStress::nominal:
             return "The stress is the force in the wall over its section at rest: F / A = sigma t0 / r0 pushes.";
         case RigStress::paper: break;
@@ -165,7 +176,7 @@ Page wall_page(const StressStrain& reference, const WallSearch& search, const Wa
 
     if (search.rig.kind == RigKind::stations) {
         page.tables.push_back(station_table(search.rig, found));
-        page.tables.push_back(strain_table(reference, found));
+        page.details.push_back(strain_table(reference, found));
     }
     for (const GaugeCurve& gauge : found.gauges) {
         const std::string where = found.gauges.size() > 1 ? ", " + gauge.name : "";
@@ -194,7 +205,10 @@ Page wall_page(const StressStrain& reference, const WallSearch& search, const Wa
         page.plots.push_back(std::move(error));
     }
     page.plots.push_back(swarm_plot(found.best_history, "RMSE, % strain", percent));
-    page.tables.push_back(swarm_table(search.swarm, found.evaluations, found.stopped));
+    PageTable swarm = swarm_table(search.swarm, found.evaluations, found.stopped);
+    swarm.rows.insert(swarm.rows.end() - 1,
+                      {"local search after it, simulations at most", std::to_string(search.polish_evaluations)});
+    page.details.push_back(std::move(swarm));
     page.command = command;
     return page;
 }
@@ -208,8 +222,7 @@ Page heart_page(const HeartSearch& search, const HeartCalibration& found, const 
         "Reference: " + reference + ". The annulus' mean displacement along its axis into the aorta, over " +
         std::to_string(search.beats) + " beats at " + plain_number(search.scene.heart.rate_bpm) +
         " a minute after one that does not count. The rest pose of the vessels is the moment at which the annulus "
-        "stands "
-        "nearest to the apex: phase " +
+        "stands nearest to the apex: phase " +
         plain_number(search.target.rest_phase, 3) + " of the reference, where its displacement counts as 0.");
     page.paragraphs.push_back(
         std::string("Objective: ") +
@@ -219,7 +232,10 @@ Page heart_page(const HeartSearch& search, const HeartCalibration& found, const 
     if (found.stopped) page.paragraphs.emplace_back("The search was stopped; this is the best that it had found.");
     page.tables.push_back(figure_table(found.figures_first, found.figures, "mm", mm));
 
-    Plot curve{.title = "Annulus over the beats", .x_label = "beats", .y_label = "into the aorta, mm", .curves = {}};
+    Plot curve{.title = "Annulus over the beats",
+               .x_label = "time, beats",
+               .y_label = "displacement into the aorta, mm",
+               .curves = {}};
     curve.curves = {
         {.label = "reference", .x = found.motion.beat, .y = found.reference, .style = CurveStyle::reference},
         {.label = "first guess", .x = found.first.beat, .y = found.first.z_mm, .style = CurveStyle::first},
@@ -230,7 +246,7 @@ Page heart_page(const HeartSearch& search, const HeartCalibration& found, const 
          .marks = true,
          .line = false}};
     Plot error{.title = "Error over the beats",
-               .x_label = "beats",
+               .x_label = "time, beats",
                .y_label = "simulated - reference, mm",
                .curves = {},
                .zero_line = true};
@@ -244,11 +260,21 @@ Page heart_page(const HeartSearch& search, const HeartCalibration& found, const 
                      .style = CurveStyle::best}};
     error.height = 300;
     page.plots = {curve, error, swarm_plot(found.best_history, search.at_peaks ? "objective, mm" : "RMSE, mm", mm)};
+    Plot profile{
+        .title = "The cylinder's profile", .x_label = "phase of the beat", .y_label = "displacement, mm", .curves = {}};
+    profile.curves.push_back(
+        {.label = "best, at its knots", .x = {}, .y = {}, .style = CurveStyle::best, .marks = true, .line = false});
+    for (const auto& [phase, displacement] : found.profile) {
+        profile.curves[0].x.push_back(phase);
+        profile.curves[0].y.push_back(displacement);
+    }
+    profile.height = 260;
+    page.plots.push_back(std::move(profile));
     PageTable knots{"The cylinder's profile", {"phase", "displacement, mm"}, {}};
     for (const auto& [phase, displacement] : found.profile)
         knots.rows.push_back({plain_number(phase), plain_number(displacement, 5)});
-    page.tables.push_back(knots);
-    page.tables.push_back(swarm_table(search.swarm, found.simulations, found.stopped));
+    page.details.push_back(knots);
+    page.details.push_back(swarm_table(search.swarm, found.simulations, found.stopped));
     page.command = command;
     return page;
 }
