@@ -23,6 +23,7 @@
 #include "core/input.h"
 #include "core/parameter.h"
 #include "core/types.h"
+#include "softbody/fibres.h"
 
 namespace cathlab {
 
@@ -88,6 +89,8 @@ public:
     virtual void actuation(const EffectContext& /*context*/, Actuation& /*actuation*/) {}
     virtual void drive(const EffectContext& /*context*/, Drive& /*drive*/) {}
     virtual void material(const EffectContext& /*context*/, std::span<double> /*stiffness_scale: (n), 1 = as built*/) {}
+    /// `material` of an elastic wall: the fibres in it.
+    virtual void fibres(const EffectContext& /*context*/, Fibres& /*fibres*/) {}
     virtual void constraint(const EffectContext& /*context*/, std::vector<WallAnchor>& /*anchors*/) {}
     virtual void force(const EffectContext& /*context*/, std::span<Vec3> /*force: (n) mN, add to it*/) {}
     virtual void measure(const EffectContext& /*context*/, Channels& /*channels*/) {}
@@ -116,6 +119,7 @@ struct EffectInfo {
     /// Parameters that say how strong it is: with all of them 0 it does nothing, to the bit.
     std::vector<std::string_view> strengths = {};
     std::unique_ptr<Effect> (*make)(std::span<const double> values) = nullptr;  ///< values in the order of `parameters`
+    bool elastic_wall = false;  ///< acts on the wall's elastic form alone; a scene with the other one is refused
 };
 
 /// All effects, in the order of effects.inl.

@@ -16,6 +16,8 @@ CATHLAB_EFFECT(ectopic_beats)
 CATHLAB_EFFECT(amplitude_drift)
 CATHLAB_EFFECT(rate_variability)
 CATHLAB_EFFECT(baseline_wander)
+// Wall.
+CATHLAB_EFFECT(stiffening)
 // What a sensor makes of it.
 CATHLAB_EFFECT(sensor_latency)
 CATHLAB_EFFECT(registration)

@@ -16,6 +16,7 @@
 #include "scene/anatomy_file.h"
 #include "scene/device_file.h"
 #include "scene/flow_root.h"
+#include "scene/vessel_direction.h"
 #include "scene/wall_parameters.h"
 #include "softbody/binding.h"
 #include "softbody/solver.h"
@@ -92,7 +93,8 @@ Shared<SoftBodyModel> build_wall(const SceneSpec& spec, AnatomyModel& anatomy) {
     for (const Index region : anatomy.fine_region)
         wanted.push_back(anatomy.regions[static_cast<std::size_t>(region)].particle_spacing_mm);
     const std::vector<double> spacing = lumen_spacing(wanted, anatomy.fine_radius);
-    const WallSample sample = sample_wall(anatomy.fine, anatomy.fine_region, spacing, thickness, 1);
+    WallSample sample = sample_wall(anatomy.fine, anatomy.fine_region, spacing, thickness, 1);
+    if (parameters.form == WallForm::elastic) sample.along = vessel_directions(anatomy.centreline, sample.position);
     const auto is_fixed = [&](const Vec3& p) {
         return std::any_of(anatomy.fixed.begin(), anatomy.fixed.end(),
                            [&](const FixedZone& zone) { return zone.contains(p); });

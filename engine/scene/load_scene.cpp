@@ -99,6 +99,10 @@ void check_scene(const SceneSpec& scene) {
         throw UserError(scene.c_arm.where, "frame_rate: 7.5, 15 or 30 is wanted");
     if (scene.video.width % 2 != 0 || scene.video.height % 2 != 0)
         throw UserError({scene.path, 0, "[video]"}, "width and height must be even");
+    for (const SceneEffect& effect : scene.effects)
+        if (effect.enabled && effect.info->elastic_wall && scene.wall.form != "elastic")
+            throw UserError({scene.path, 0, "[effects." + std::string(effect.info->name) + "]"},
+                            "acts on an elastic wall alone: [wall] form = \"elastic\" is wanted");
     std::set<std::string> seen;
     for (const SceneWallRegion& region : scene.wall.regions)
         if (!seen.insert(region.name).second)

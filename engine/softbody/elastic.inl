@@ -27,8 +27,11 @@ ELASTIC_INLINE Block logarithm(const Block& x) {
     m = high ? 0.5 * m : m;
     e = high ? e + 1.0 : e;
     const Block s = (m - 1.0) / (m + 1.0), z = s * s;
-    Block sum = Block{} + 1.0 / 21.0;
-    for (int k = 19; k >= 3; k -= 2) sum = sum * z + 1.0 / k;
+    // Terms in pairs, pairs in fours: a chain of ten would wait on itself.
+    const Block z2 = z * z, z4 = z2 * z2;
+    const Block low = (1.0 / 3.0 + z * (1.0 / 5.0)) + z2 * (1.0 / 7.0 + z * (1.0 / 9.0));
+    const Block middle = (1.0 / 11.0 + z * (1.0 / 13.0)) + z2 * (1.0 / 15.0 + z * (1.0 / 17.0));
+    const Block sum = (low + z4 * middle) + (z4 * z4) * (1.0 / 19.0 + z * (1.0 / 21.0));
     // e ln 2 in two parts: the first has no rounding.
     return e * 0.693147180369123816490 + (2.0 * s + (2.0 * s * z * sum + e * 1.90821492927058770002e-10));
 }
@@ -39,11 +42,11 @@ ELASTIC_INLINE Block exponential(const Block& x) {
     const Block shifted = x * 1.44269504088896340736 + shifter;
     const Block n = shifted - shifter;
     const Block r = (x - n * 0.693147180369123816490) - n * 1.90821492927058770002e-10;
-    const double inverse_factorial[13] = {1.0,        1.0,         0.5,          1.0 / 6.0,     1.0 / 24.0,
-                                          1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0, 1.0 / 40320.0, 1.0 / 362880.0,
-                                          1.0 / 3628800.0, 1.0 / 39916800.0, 1.0 / 479001600.0};
-    Block sum = Block{} + inverse_factorial[12];
-    for (int k = 11; k >= 0; --k) sum = sum * r + inverse_factorial[k];
+    const Block r2 = r * r, r4 = r2 * r2;
+    const Block low = (1.0 + r) + r2 * (1.0 / 2.0 + r * (1.0 / 6.0));
+    const Block middle = (1.0 / 24.0 + r * (1.0 / 120.0)) + r2 * (1.0 / 720.0 + r * (1.0 / 5040.0));
+    const Block high = (1.0 / 40320.0 + r * (1.0 / 362880.0)) + r2 * (1.0 / 3628800.0 + r * (1.0 / 39916800.0));
+    const Block sum = (low + r4 * middle) + (r4 * r4) * (high + r4 * (1.0 / 479001600.0));
     Bits bits;
     __builtin_memcpy(&bits, &shifted, sizeof bits);
     bits = (bits + 1023) << 52;

@@ -210,7 +210,10 @@ struct Stretched {
 Vector2d round_of(const ShellTriangle& t, std::span<const Vec3> rest, std::span<const Vec3> along) {
     const Vec3 first = (rest[at(t.corner[1])] - rest[at(t.corner[0])]).normalized();
     const Vec3 normal = first.cross(rest[at(t.corner[2])] - rest[at(t.corner[0])]).normalized();
-    const Vec3 round = normal.cross(along[at(t.corner[0])] + along[at(t.corner[1])] + along[at(t.corner[2])]);
+    Vec3 way = along[at(t.corner[0])];  // of either sign
+    for (int k = 1; k < 3; ++k)
+        way += along[at(t.corner[k])].dot(way) < 0.0 ? -along[at(t.corner[k])] : along[at(t.corner[k])];
+    const Vec3 round = normal.cross(way);
     const double x = round.dot(first), y = round.dot(normal.cross(first)), squared = x * x + y * y;
     if (!(squared > 1e-12)) return Vector2d::Zero();
     return Vector2d(x * x - y * y, 2.0 * x * y) / squared;

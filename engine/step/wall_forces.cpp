@@ -18,7 +18,12 @@ WallForces::WallForces(const Parts& p, const EffectContext& context) {
     if (hooks & hook_material) {
         std::vector<double>& scale = p.wall_scratch->stiffness_scale;
         scale.assign(n, 1.0);
-        p.each_effect(hook_material, [&](Effect& effect) { effect.material(context, scale); });
+        Fibres& fibres = p.wall_scratch->fibres;
+        fibres = {};
+        p.each_effect(hook_material, [&](Effect& effect) {
+            effect.material(context, scale);
+            effect.fibres(context, fibres);
+        });
     }
     if (hooks & hook_constraint)
         p.each_effect(hook_constraint, [&](Effect& effect) { effect.constraint(context, anchors_); });

@@ -114,6 +114,9 @@ TEST_F(LoadScene, WhatKeysMustSayTogetherIsChecked) {
     EXPECT_NO_THROW(load(base + "[effects.test_force]\n"));
     EXPECT_NE(error_of(base + "[effects.respiration]\nperiod_s = 0\n").find("[effects.respiration] period_s: found 0"),
               std::string::npos);
+    EXPECT_NE(error_of(base + "[effects.stiffening]\n").find("[wall] form = \"elastic\" is wanted"), std::string::npos);
+    EXPECT_NO_THROW(load(base + "[effects.stiffening]\n[wall]\nform = 'elastic'\n"));
+    EXPECT_NE(error_of(base + "[wall]\nform = 'elastc'\n").find("elastic"), std::string::npos);
     EXPECT_NE(error_of("schema = 1\n[anatomy]\nmesh = 'x.obj'\n").find("no such file 'x.obj'"), std::string::npos);
     folder.write("scenes/x.obj", "");
     EXPECT_NE(error_of("schema = 1\n[anatomy]\nmesh = 'x.obj'\n").find("[[anatomy.entry]]"), std::string::npos);

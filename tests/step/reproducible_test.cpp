@@ -60,6 +60,22 @@ TEST(Models, BuiltOnThreeThreadsGiveTheSameWorld) {
     EXPECT_EQ(hash_after(built, 20), hash_after(usual, 20));
 }
 
+TEST(ElasticWall, EndsInTheSameStateOnAnyNumberOfThreads) {
+    SceneSpec spec = rig_spec("fork");
+    spec.wall.form = "elastic";
+    enable(spec, "stiffening", {{"fibre_kpa", 50.0}});
+    const auto models = build_models(spec, {});
+    std::vector<std::uint64_t> hashes;
+    for (const int threads : {1, 2, 3}) {
+        RigRun run(build_world(spec, *models, spec.seed, threads));
+        hashes.push_back(hash_after(run, 60));
+        EXPECT_LT(run.channels.wire_penetration_mm, 0.5);
+        EXPECT_EQ(run.channels.outside_count, 0.0);
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+    EXPECT_EQ(hashes[0], hashes[2]);
+}
+
 TEST(Replay, FromStepZeroMeetsEveryHash) {
     RigRun first("fork");
     std::vector<std::uint64_t> hashes{first.hash()};
