@@ -35,9 +35,9 @@ EffectInfo segment_coupling_effect() {
         .hooks = hook_actuation,
         .for_tests = false,
         .applies_to = {"catheter-tip", "tendon-tip"},
-        .parameters = {{"from_next", "1", 0.15, -0.8, 0.8, "part of the next segment's bend that a segment takes"},
-                       {"from_far", "1", 0.0, -0.8, 0.8, "the same from the segment after the next"},
-                       {"from_before", "1", 0.0, -0.8, 0.8, "the same from the segment before"}},
+        .parameters = {{"from_next", "1", 0.15, -1.5, 1.5, "part of the next segment's bend that a segment takes"},
+                       {"from_far", "1", 0.0, -1.5, 1.5, "the same from the segment after the next"},
+                       {"from_before", "1", 0.0, -1.5, 1.5, "the same from the segment before"}},
         .strengths = {"from_next", "from_far", "from_before"},
         .make = [](std::span<const double> p) -> std::unique_ptr<Effect> {
             return std::make_unique<SegmentCoupling>(p);

@@ -35,6 +35,12 @@ public:
         proximal_ = input("proximal_bend");
         distal_ = input("distal_bend");
         for (const DataColumn* column : measured_) axis_.push_back(column->quantity.back() - 'x');
+        CatheterState state = initial_state(spec_);
+        Actuation act;
+        for (std::size_t i = 0; i < data.rows(); ++i) {
+            begin(act, i);
+            commanded_.push_back(place(act, state));
+        }
     }
 
     Columns residual(std::span<const double>, std::span<const EffectTrial> trials) const override {
@@ -50,15 +56,16 @@ public:
         for (std::size_t i = 0; i < data_.rows(); ++i) {
             if (i == 0 || data_.run[i] != data_.run[i - 1]) effects.begin_run(data_.run[i]);
             effects.next_row(data_.time_s[i]);
-            begin(act, i);
+            tip = commanded_[i];
             if (actuated) {
+                begin(act, i);
                 if (data_.catheter.down) {
                     const Quat turn = det::rotation_from_vector(Vec3(0.0, 0.0, -act.rotation_rad));
                     act.down = turn * (to_base * *data_.catheter.down);
                 }
                 effects.actuation(act);
+                tip = place(act, state);
             }
-            tip = place(act, state);
             if (driven) tip += effects.drive().support_displacement[0];
             if (read) {
                 Channels channels;
@@ -109,6 +116,7 @@ private:
     Rail rail_;
     const std::vector<double>*insertion_, *rotation_, *proximal_, *distal_;
     std::vector<int> axis_;
+    std::vector<Vec3> commanded_;  // (rows) tips as the drive asks for them
 };
 
 }  // namespace

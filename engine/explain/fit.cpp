@@ -60,9 +60,11 @@ double Fitter::cost_of(const FittedModel& model) const {
     return mean_cost(model.residual, rig_.split(), 0, scale_);
 }
 
-void Fitter::refit(FittedModel& model, int iterations) const {
+void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
     const Split& split = rig_.split();
-    const std::vector<Bound> base = rig_.bounds();
+    std::vector<Bound> base = rig_.bounds();
+    if (!base_too)
+        for (std::size_t k = 0; k < base.size(); ++k) base[k].lower = base[k].upper = model.base[k];
     LeastSquaresProblem problem;
     problem.bounds = base;
     problem.start = model.base;
@@ -163,6 +165,10 @@ bool Fitter::learn(const EffectInfo& effect) {
     for (std::size_t k = 0; k < usual.size(); ++k) {
         const Parameter& p = effect.parameters[k];
         bool matters = false;
+        if (rig_.takes_up(effect, p.key)) {
+            out.push_back(false);
+            continue;
+        }
         for (const double part : {0.13, 0.71}) {
             std::vector<double> other = usual;
             other[k] = usual[k] + part * ((part < 0.5 ? p.minimum : p.maximum) - usual[k]);
@@ -198,6 +204,13 @@ std::vector<std::vector<double>> Fitter::starts(const FittedModel& from, const E
             // Half a turn of the phase is the other sign.
             if (sign > 0.0 || (turned && !swings)) levels.push_back(values);
         }
+    }
+    const std::size_t ways = levels.size();
+    for (std::size_t way = 0; way < ways; ++way) {
+        std::vector<double> back = levels[way];
+        for (std::size_t k = 0; k < back.size(); ++k)
+            if (free[k] && is_direction(effect.parameters[k])) back[k] = -back[k];
+        if (back != levels[way]) levels.push_back(std::move(back));
     }
     if (period == effect.parameters.size()) return levels;
     // Periods that the residual shows, and all over the range: a rate that varies shows beside the beat's own lines.
@@ -273,23 +286,30 @@ FittedModel Fitter::beside(const FittedModel& from, const EffectTrial& trial) co
 }
 
 FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) const {
-    constexpr std::size_t searched = 3;
-    std::vector<FittedModel> tried;
+    constexpr std::size_t searched = 2;  // of each way that the effect may point
+    std::vector<FittedModel> tried[2];
+    const std::vector<double> usual = defaults(effect);
     for (const std::vector<double>& values : starts(from, effect)) {
+        bool back = false;
+        for (std::size_t k = 0; k < values.size(); ++k)
+            back = back || (is_direction(effect.parameters[k]) && values[k] != usual[k]);
         FittedModel model = beside(from, turned(from, {&effect, values}));
         model.residual = rig_.residual(model.base, model.effects);
         model.train_cost = cost_of(model);
-        tried.push_back(std::move(model));
-        std::sort(tried.begin(), tried.end(),
+        std::vector<FittedModel>& best = tried[back ? 1 : 0];
+        best.push_back(std::move(model));
+        std::sort(best.begin(), best.end(),
                   [](const FittedModel& a, const FittedModel& b) { return a.train_cost < b.train_cost; });
-        if (tried.size() > searched) tried.pop_back();
+        if (best.size() > searched) best.pop_back();
     }
     FittedModel best;
     best.train_cost = std::numeric_limits<double>::infinity();
-    for (FittedModel& model : tried) {
-        refit(model, 25);
-        if (model.train_cost < best.train_cost) best = std::move(model);
-    }
+    for (std::vector<FittedModel>& way : tried)
+        for (FittedModel& model : way) {
+            refit(model, 10, false);  // where to go, with the base numbers as they were
+            if (model.train_cost < best.train_cost) best = std::move(model);
+        }
+    refit(best, rig_.bounds().empty() ? 30 : 15);
     return best;
 }
 

@@ -39,8 +39,8 @@ public:
     /// The model without its effect number k, the rest fitted again.
     FittedModel without(const FittedModel& from, std::size_t k) const;
 
-    /// Goes on from where the model is.
-    void refit(FittedModel& model, int iterations) const;
+    /// Goes on from where the model is; base_too = false holds the base numbers.
+    void refit(FittedModel& model, int iterations, bool base_too = true) const;
 
     const Rig& rig() const { return rig_; }
 

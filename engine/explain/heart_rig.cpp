@@ -1,6 +1,7 @@
 // Kind heart-motion: one periodic beat in each measured coordinate and a rest position a run, both fitted.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/units.h"
 #include "explain/beat_clock.h"
@@ -23,21 +24,33 @@ public:
             harmonics_ = std::clamp(static_cast<Eigen::Index>((train / rows_a_number - runs) / 2.0), Eigen::Index{1},
                                     most_harmonics);
         axis_ = data.heart.axis.value_or(Vec3::UnitZ());
+        for (const DataColumn* column : measured_) {
+            auto& known = known_.emplace_back();
+            for (std::size_t i = 0; i < data.rows(); ++i)
+                known.push_back(split.held_out[i] == 0 && !std::isnan(column->values[i]) ? 1 : 0);
+        }
+        Columns rest;
+        usual_ = factored(beat_and_effects({}, rest).value());
     }
 
     Columns residual(std::span<const double>, std::span<const EffectTrial> trials) const override {
         Columns out;
-        const Basis basis = beat_and_effects(trials, out);
-        for (auto& column : out) subtract(basis, solve_linear(basis, column, split_), column);
+        const std::vector<LinearPart> own = solvers(beat_and_effects(trials, out));
+        const std::vector<LinearPart>& use = own.empty() ? usual_ : own;
+        for (std::size_t c = 0; c < out.size(); ++c) {
+            const LinearPart& part = use[std::min(c, use.size() - 1)];
+            subtract(part.basis(), part.solve(out[c]), out[c]);
+        }
         return out;
     }
 
     NamedNumbers parameters(std::span<const double>, std::span<const EffectTrial> trials) const override {
         Columns rest;
-        const Basis basis = beat_and_effects(trials, rest);
+        const std::vector<LinearPart> own = solvers(beat_and_effects(trials, rest));
+        const std::vector<LinearPart>& use = own.empty() ? usual_ : own;
         NamedNumbers out;
         for (std::size_t c = 0; c < rest.size(); ++c) {
-            const Eigen::VectorXd found = solve_linear(basis, rest[c], split_);
+            const Eigen::VectorXd found = use[std::min(c, use.size() - 1)].solve(rest[c]);
             const std::string& quantity = measured_[c]->quantity;
             for (std::size_t r = 0; r < data_.run_names.size(); ++r)
                 out.emplace_back("rest_" + data_.run_names[r] + "_" + quantity, found[static_cast<Eigen::Index>(r)]);
@@ -52,15 +65,29 @@ public:
     }
 
 private:
-    /// The basis of the beat as the effects leave it, and in `rest` the measurements less what the effects add.
-    /// The beat goes from where the heart stands at its onset: scale (B(phase) - B(0)), the engine's own convention.
-    Basis beat_and_effects(std::span<const EffectTrial> trials, Columns& rest) const {
+    /// One factorisation where all columns know the same rows, else one a column.
+    std::vector<LinearPart> factored(const Basis& basis) const {
+        std::vector<LinearPart> out;
+        const bool alike =
+            std::all_of(known_.begin(), known_.end(), [&](const auto& known) { return known == known_[0]; });
+        for (std::size_t c = 0; c < (alike ? 1 : known_.size()); ++c) out.emplace_back(basis, known_[c]);
+        return out;
+    }
+    std::vector<LinearPart> solvers(const std::optional<Basis>& basis) const {
+        return basis ? factored(*basis) : std::vector<LinearPart>{};
+    }
+
+    /// The basis of the beat as the effects leave it (nothing where they leave it as it is and that is known already),
+    /// and in `rest` the measurements less what the effects add.  The beat goes from where the heart stands at its
+    /// onset: scale (B(phase) - B(0)), the engine's own convention.
+    std::optional<Basis> beat_and_effects(std::span<const EffectTrial> trials, Columns& rest) const {
         for (const DataColumn* column : measured_) rest.push_back(column->values);
         RigEffects effects(trials);
         const bool driven = effects.uses(hook_drive), read = effects.uses(hook_measure);
         const auto runs = static_cast<Eigen::Index>(data_.run_names.size());
-        Basis basis = Basis::Zero(static_cast<Eigen::Index>(data_.rows()), runs + 2 * harmonics_);
         double ahead = 0.0;  // of the recorded beats, in beats
+        std::vector<BeatPlace> places;
+        bool as_usual = !usual_.empty();
         for (std::size_t i = 0; i < data_.rows(); ++i) {
             if (i == 0 || data_.run[i] != data_.run[i - 1]) {
                 effects.begin_run(data_.run[i]);
@@ -76,7 +103,7 @@ private:
             double scale = 1.0;
             Vec3 moved = Vec3::Zero();
             if (driven) {
-                const Drive drive = effects.drive();
+                const Drive& drive = effects.drive();
                 moved = drive.support_displacement[0] + drive.heart_displacement_mm * axis_;
                 scale = drive.heart_amplitude_scale;
                 if (beat.usual_s > 0.0) ahead += (drive.heart_rate_scale - 1.0) * context.dt / beat.usual_s;
@@ -92,17 +119,23 @@ private:
             } else if (driven) {
                 for (std::size_t c = 0; c < rest.size(); ++c) rest[c][i] -= component(c, moved);
             }
-            const auto row = static_cast<Eigen::Index>(i);
-            basis(row, data_.run[i]) = 1.0;
-            const double angle = 2.0 * units::pi * (beat.phase + ahead);
+            as_usual = as_usual && scale == 1.0 && ahead == 0.0;
+            places.push_back({beat.phase + ahead, scale});
+        }
+        if (as_usual) return std::nullopt;
+        Basis basis = Basis::Zero(static_cast<Eigen::Index>(data_.rows()), runs + 2 * harmonics_);
+        for (Eigen::Index row = 0; row < basis.rows(); ++row) {
+            const BeatPlace& place = places[static_cast<std::size_t>(row)];
+            basis(row, data_.run[static_cast<std::size_t>(row)]) = 1.0;
+            const double angle = 2.0 * units::pi * place.phase;
             const double c1 = std::cos(angle), s1 = std::sin(angle);
             double c = 1.0, s = 0.0;
             for (Eigen::Index k = 0; k < harmonics_; ++k) {
                 const double next = c * c1 - s * s1;
                 s = s * c1 + c * s1;
                 c = next;
-                basis(row, runs + 2 * k) = scale * (c - 1.0);
-                basis(row, runs + 2 * k + 1) = scale * s;
+                basis(row, runs + 2 * k) = place.scale * (c - 1.0);
+                basis(row, runs + 2 * k + 1) = place.scale * s;
             }
         }
         return basis;
@@ -119,7 +152,13 @@ private:
                 measured_[c]->quantity == "displacement" ? channels.annulus_displacement_mm : component(c, tip);
     }
 
+    struct BeatPlace {
+        double phase, scale;
+    };
+
     BeatClock clock_;
+    std::vector<std::vector<std::uint8_t>> known_;  // (columns x rows)
+    std::vector<LinearPart> usual_;                 // the beat without effects
     Eigen::Index harmonics_ = 0;
     Vec3 axis_;
 };

@@ -1,25 +1,38 @@
 #include "explain/linear_part.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 namespace cathlab {
 
-Eigen::VectorXd solve_linear(const Basis& basis, const std::vector<double>& values, const Split& split) {
-    const Eigen::Index n = basis.cols();
+LinearPart::LinearPart(Basis basis, std::vector<std::uint8_t> known)
+    : basis_(std::move(basis)), known_(std::move(known)) {
+    const Eigen::Index n = basis_.cols();
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-    for (Eigen::Index i = 0; i < basis.rows(); ++i) {
-        const double value = values[static_cast<std::size_t>(i)];
-        if (split.held_out[static_cast<std::size_t>(i)] != 0 || std::isnan(value)) continue;
-        const auto row = basis.row(i);
-        normal.selfadjointView<Eigen::Lower>().rankUpdate(row.transpose());
-        right.noalias() += value * row.transpose();
-    }
+    for (Eigen::Index i = 0; i < basis_.rows(); ++i)
+        if (known_[static_cast<std::size_t>(i)] != 0)
+            normal.selfadjointView<Eigen::Lower>().rankUpdate(basis_.row(i).transpose());
     const double scale = normal.trace() / static_cast<double>(n);
-    if (!(scale > 0.0)) return Eigen::VectorXd::Zero(n);
+    empty_ = !(scale > 0.0);
+    if (empty_) return;
     normal.diagonal().array() += 1e-10 * scale;
-    return normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+    const Eigen::MatrixXd whole = normal.selfadjointView<Eigen::Lower>();
+    factored_.compute(whole);
+}
+
+Eigen::VectorXd LinearPart::solve(const std::vector<double>& values) const {
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(basis_.cols());
+    if (empty_) return right;
+    for (Eigen::Index i = 0; i < basis_.rows(); ++i)
+        if (known_[static_cast<std::size_t>(i)] != 0)
+            right.noalias() += values[static_cast<std::size_t>(i)] * basis_.row(i).transpose();
+    return factored_.solve(right);
+}
+
+Eigen::VectorXd solve_linear(const Basis& basis, const std::vector<double>& values, const Split& split) {
+    std::vector<std::uint8_t> known;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        known.push_back(split.held_out[i] == 0 && !std::isnan(values[i]) ? 1 : 0);
+    return LinearPart(basis, std::move(known)).solve(values);
 }
 
 void subtract(const Basis& basis, const Eigen::VectorXd& x, std::vector<double>& values) {

@@ -62,12 +62,13 @@ void RigEffects::actuation(Actuation& act) {
         if ((trials_[k].effect->hooks & hook_actuation) != 0) made_[k]->actuation(context_, act);
 }
 
-Drive RigEffects::drive() {
-    Drive drive;
-    drive.support_displacement.assign(1, Vec3::Zero());
+const Drive& RigEffects::drive() {
+    drive_.support_displacement.assign(1, Vec3::Zero());
+    drive_.heart_rate_scale = drive_.heart_amplitude_scale = 1.0;
+    drive_.heart_displacement_mm = 0.0;
     for (std::size_t k = 0; k < made_.size(); ++k)
-        if ((trials_[k].effect->hooks & hook_drive) != 0) made_[k]->drive(context_, drive);
-    return drive;
+        if ((trials_[k].effect->hooks & hook_drive) != 0) made_[k]->drive(context_, drive_);
+    return drive_;
 }
 
 void RigEffects::measure(Channels& channels) {

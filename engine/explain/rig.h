@@ -59,6 +59,9 @@ public:
     /// Why an effect cannot be tried on these data, in a sentence; "" where it can.
     virtual std::string why_not(const EffectInfo& effect) const;
 
+    /// Whether the base model's own numbers do what this parameter does: it is then not searched.
+    virtual bool takes_up(const EffectInfo& /*effect*/, std::string_view /*key*/) const { return false; }
+
 protected:
     const Dataset& data_;
     const Split& split_;

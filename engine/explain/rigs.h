@@ -22,8 +22,8 @@ public:
     EffectContext& context() { return context_; }
 
     void actuation(Actuation& act);
-    /// What the drive asks of a support that moves in full, and of the heart.
-    Drive drive();
+    /// What the drive asks of a support that moves in full, and of the heart; valid until the next call.
+    const Drive& drive();
     void measure(Channels& channels);
     bool uses(unsigned hooks) const;
 
@@ -31,6 +31,7 @@ private:
     std::span<const EffectTrial> trials_;
     std::vector<std::unique_ptr<Effect>> made_;
     EffectContext context_;
+    Drive drive_;
     bool first_ = true;
     double last_s_ = 0.0;
 };

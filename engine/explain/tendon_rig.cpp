@@ -102,6 +102,10 @@ public:
         return Rig::why_not(effect);
     }
 
+    bool takes_up(const EffectInfo& effect, std::string_view key) const override {
+        return effect.name == "registration" && key == "turn_z_deg";  // the angles of the first tendons
+    }
+
 private:
     void prepare(Actuation& act, std::span<const double> base) const {
         act.segments.resize(spec_.segments.size());

@@ -21,6 +21,7 @@ constexpr double significant = 0.01;
 constexpr double not_apart = 0.05;      // above it two models explain alike
 constexpr double least_gain = 0.01;     // of the held-out error
 constexpr double floor_factor = 1.15;   // a residual this near to the noise is noise
+constexpr double nothing_more = 1.1;    // times the declared noise: what is left beside an effect is its own law
 constexpr std::size_t kept_models = 3;  // from round to round
 
 std::set<std::string_view> names_of(const FittedModel& model) {
@@ -156,11 +157,15 @@ private:
         note(children, accepted);
         if (accepted.empty()) return false;
         find_equals(accepted);
+        // Those that are far behind the best will not overtake it.
+        const double before = mean_cost(kept_[0].residual, split_, 1, fitter_.scale());
+        const double enough = before - 0.5 * (before - accepted[0]->held_out_cost);
         std::vector<FittedModel> next;
         for (std::size_t k = 0; k < std::min(kept_models, accepted.size()); ++k)
-            next.push_back(std::move(accepted[k]->model));
+            if (accepted[k]->held_out_cost <= enough) next.push_back(std::move(accepted[k]->model));
         kept_ = std::move(next);
-        return true;
+        const double left = rms_of(kept_[0].residual, split_, 1);
+        return !(left <= nothing_more * data_.sensor_noise);
     }
 
     void fit_all(std::vector<Child>& children) {
