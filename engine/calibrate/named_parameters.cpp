@@ -24,7 +24,8 @@ void walk(const TableSpec& spec, const std::string& prefix, std::vector<const Fi
         const std::string path = prefix.empty() ? field.key : prefix + "." + field.key;
         if (field.kind == FieldKind::number)
             see({{path, field.unit, field.range.minimum, field.range.maximum}, &field, tables});
-        if (field.kind != FieldKind::table || !field.sub) continue;
+        // How a rig loads a wall is no property of what a world simulates.
+        if (field.kind != FieldKind::table || !field.sub || path == "rig") continue;
         tables.push_back(&field);
         walk(*field.sub, path, tables, see);
         tables.pop_back();

@@ -12,7 +12,7 @@
 namespace cathlab {
 namespace {
 
-constexpr double ring_width_mm = 10.0, strip_width_mm = 12.0, block_mm = 40.0;
+constexpr double ring_width_mm = 10.0, strip_width_mm = 12.0, block_mm = 20.0;
 constexpr double least_tube_radii = 3.0, least_strip_widths = 3.0;
 constexpr std::array<std::string_view, 5> kind_names{"tube", "stations", "ring", "strip", "block"};
 

@@ -59,7 +59,7 @@ struct RigOptions {
 ///   tube, ring, strip, block   want one straight vessel of one radius in a parametric anatomy.  The wall's thickness
 ///   is
 ///       that of its region.  A ring has its radius and the rig's width (10 mm); a strip is as long as the tube and 12
-///       mm wide, a block 40 mm by 40 mm, unless the rig says otherwise; both are cut round the vessel
+///       mm wide, a block 20 mm by 20 mm, unless the rig says otherwise; both are cut round the vessel
 ///   stations                   any anatomy, parametric or imported
 /// Throws UserError for an anatomy, a size or a station that cannot be.
 WallRig wall_rig(const SceneSpec& scene, const RigOptions& options = {});

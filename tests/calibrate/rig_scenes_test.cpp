@@ -24,7 +24,7 @@ TEST(RigScenes, RingStripAndBlockAreCutFromTheirTube) {
     EXPECT_NEAR(strip.thickness_mm, 1.0, 1e-12);
     const WallRig block = wall_rig(rig_scene("block"));
     EXPECT_EQ(block.kind, RigKind::block);
-    EXPECT_NEAR(block.width_mm, 40.0, 1e-12);
+    EXPECT_NEAR(block.width_mm, 20.0, 1e-12);
     EXPECT_EQ(rig_scene("aorta").rig.stations.size(), 4U);
     EXPECT_EQ(gauge_names(ring), std::vector<std::string>{"ring"});
 }

@@ -32,9 +32,10 @@ TEST_P(Silicone, IsAReferenceForTheBlockAloneAndAnElasticWallFollowsItsBeginning
     search.rig = wall_rig(search.scene);
     search.rig.stress = RigStress::nominal;
     search.free = {named_bound("wall.young_kpa", 5.0, 200.0)};
-    search.swarm.particles = 6;
-    search.swarm.generations = 3;
+    search.swarm.particles = 4;
+    search.swarm.generations = 2;
     search.swarm.threads = 2;
+    search.polish_evaluations = 12;
     const WallCalibration found = calibrate_wall(reference, search);
     EXPECT_LT(found.figures.rmse, 0.01) << found.values[0].second << " kPa";
 
