@@ -103,7 +103,7 @@ std::string rig_text(const WallRig& rig) {
                    " thick, held at one end and pulled at the other; strain along the pull of "
                    "its middle third.";
         case RigKind::block:
-            return "a sheet " + mm(rig.length_mm) + " long, " + mm(rig.width_mm) + " wide and " + mm(rig.thickness_mm) +
+            return "a block " + mm(rig.length_mm) + " long, " + mm(rig.width_mm) + " wide and " + mm(rig.thickness_mm) +
                    " thick, which smooth plates and guides keep flat and even; strain along "
                    "the load.";
         case RigKind::stations: break;
