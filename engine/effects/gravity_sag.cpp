@@ -34,8 +34,8 @@ public:
         for (std::size_t k = parts_.size(); k-- > 0;) {
             const Part& p = parts_[k];
             if (p.segment < act.segments.size()) {
-                // Half of the part itself lies beyond its middle.
-                const Vec3 own = 0.125 * p.length * p.length * (p.frame * Vec3::UnitZ());
+                // What of the part itself lies beyond: L^2 / 8 at its middle, L^2 / 6 on average over it.
+                const Vec3 own = p.length * p.length / 6.0 * (p.frame * Vec3::UnitZ());
                 const Vec3 moment = (first - beyond * p.middle + own).cross(load * act.down);
                 const Vec3 turn = p.frame.conjugate() * (p.length * moment);
                 act.segments[p.segment].bend_rad += Vec2(turn.y(), -turn.x());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/random.h"
 #include "explain/residual.h"
 #include "optimise/least_squares.h"
 
@@ -136,6 +137,26 @@ FittedModel Fitter::begin(std::span<const EffectInfo* const> declared) {
     FittedModel model;
     model.base = rig_.start();
     model.residual = rig_.residual(model.base, {});
+    const std::vector<Bound> bounds = rig_.bounds();
+    if (!bounds.empty()) {
+        // A search for angles has valleys: others begin around the first start, and the deepest is taken.
+        constexpr int others = 11;
+        constexpr double around = 0.06;  // of the ranges
+        weigh_by(model);
+        FittedModel best = model;
+        refit(best, 15);
+        for (int k = 0; k < others; ++k) {
+            FittedModel other = model;
+            for (std::size_t j = 0; j < other.base.size(); ++j) {
+                const Bound& b = bounds[j];
+                const double shift = random_normal(1, RandomStream::optimiser, static_cast<std::uint64_t>(k), j);
+                other.base[j] = std::clamp(other.base[j] + around * shift * (b.upper - b.lower), b.lower, b.upper);
+            }
+            refit(other, 15);
+            if (other.train_cost < best.train_cost) best = std::move(other);
+        }
+        model = std::move(best);
+    }
     // The first fit sees large errors everywhere: its own scale, again and again until it stays.
     constexpr int rounds = 4;
     for (int k = 0; k < rounds; ++k) {

@@ -45,8 +45,8 @@ public:
         for (const std::string& name : names_) {
             out.push_back({-360.0, 360.0, name + "_first_tendon_deg"});
             out.push_back({0.0, 4.0, name + "_gain"});
-            out.push_back({-90.0, 90.0, name + "_rest_x_deg"});
-            out.push_back({-90.0, 90.0, name + "_rest_y_deg"});
+            out.push_back({-60.0, 60.0, name + "_rest_x_deg"});
+            out.push_back({-60.0, 60.0, name + "_rest_y_deg"});
         }
         for (const char* name : {"marker_x_mm", "marker_y_mm", "marker_z_mm"}) out.push_back({-60.0, 60.0, name});
         return out;
