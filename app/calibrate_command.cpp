@@ -119,8 +119,8 @@ void calibrate(const WallOptions& options, AppContext& context) {
     progress.end();
 
     const Page page = wall_page(reference, search, found, context.command_line);
-    const std::size_t told = search.rig.kind == RigKind::stations ? 4 : 2;  // the others are the report's
-    for (std::size_t k = 0; k < told; ++k) std::printf("%s", table_text(page.tables[k]).c_str());
+    for (const PageTable& table : page.tables) std::printf("%s", table_text(table).c_str());
+    if (search.rig.kind == RigKind::stations) std::printf("%s", table_text(page.details.front()).c_str());
     output.write(found.overlay,
                  {"wall, from " + path_for_manifest(options.reference, context.data_root),
                   "RMSE " + plain_number(100.0 * found.figures.rmse, 3) + " % strain, maximum " +
