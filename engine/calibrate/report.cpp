@@ -216,6 +216,11 @@ Page wall_page(const StressStrain& reference, const WallSearch& search, const Wa
 Page heart_page(const HeartSearch& search, const HeartCalibration& found, const std::string& reference,
                 const std::string& command) {
     constexpr double mm = 1.0;
+    std::string in_beats = "time, beats";
+    if (!found.motion.beat.empty()) {
+        const double begin = found.motion.phase.front() - found.motion.beat.front();
+        in_beats += " from phase " + plain_number(begin - std::floor(begin), 3);
+    }
     Page page;
     page.title = "Calibration of the heart";
     page.paragraphs.push_back(
@@ -233,7 +238,7 @@ Page heart_page(const HeartSearch& search, const HeartCalibration& found, const 
     page.tables.push_back(figure_table(found.figures_first, found.figures, "mm", mm));
 
     Plot curve{.title = "Annulus over the beats",
-               .x_label = "time, beats",
+               .x_label = in_beats,
                .y_label = "displacement into the aorta, mm",
                .curves = {}};
     curve.curves = {
@@ -246,7 +251,7 @@ Page heart_page(const HeartSearch& search, const HeartCalibration& found, const 
          .marks = true,
          .line = false}};
     Plot error{.title = "Error over the beats",
-               .x_label = "time, beats",
+               .x_label = in_beats,
                .y_label = "simulated - reference, mm",
                .curves = {},
                .zero_line = true};
@@ -260,13 +265,19 @@ Page heart_page(const HeartSearch& search, const HeartCalibration& found, const 
                      .style = CurveStyle::best}};
     error.height = 300;
     page.plots = {curve, error, swarm_plot(found.best_history, search.at_peaks ? "objective, mm" : "RMSE, mm", mm)};
-    Plot profile{
-        .title = "The cylinder's profile", .x_label = "phase of the beat", .y_label = "displacement, mm", .curves = {}};
+    Plot profile{.title = "The cylinder's profile",
+                 .x_label = "phase of the beat",
+                 .y_label = "displacement up, mm",
+                 .curves = {}};
     profile.curves.push_back(
         {.label = "best, at its knots", .x = {}, .y = {}, .style = CurveStyle::best, .marks = true, .line = false});
     for (const auto& [phase, displacement] : found.profile) {
         profile.curves[0].x.push_back(phase);
         profile.curves[0].y.push_back(displacement);
+    }
+    if (!found.profile.empty()) {  // and begins again
+        profile.curves[0].x.push_back(found.profile.front()[0] + 1.0);
+        profile.curves[0].y.push_back(found.profile.front()[1]);
     }
     profile.height = 260;
     page.plots.push_back(std::move(profile));
