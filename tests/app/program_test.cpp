@@ -85,8 +85,9 @@ TEST(Program, ABadScriptSizeOrFolderIsToldBeforeTheWorldIsBuilt) {
     const Outcome script = call("run " + scene + " --out " + out + " --script " + folder.write("s.csv", "t,a,v\n"));
     EXPECT_EQ(script.code, 1);
     EXPECT_TRUE(one_sentence(script));
+    const std::string sized = "run " + scene + " --out " + out + " --size ";
     for (const char* size : {"3x3", "512", "511x512", "axb", "99999x99999", "512x-2"}) {
-        const Outcome wrong = call("run " + scene + " --out " + out + " --size " + size);
+        const Outcome wrong = call(sized + size);
         EXPECT_EQ(wrong.code, 2) << size;
         EXPECT_TRUE(one_sentence(wrong)) << size;
     }
@@ -137,14 +138,15 @@ TEST(Program, ABadScriptOrMeshLeavesNoRunFolder) {
     const TemporaryFolder folder;
     const std::string out = folder.path("run");
     const std::string rig = std::string(CATHLAB_SOURCE_DIR) + "/scenes/rigs/tube_wire.toml";
+    const std::string scripted = "run " + rig + " --video none --seconds 1 --out " + out + " --script ";
     for (const char* row :
          {"0,advance,nan", "0,advance,inf", "nan,advance,1", "0,advance,1e9", "0,advanse,1", "-1,advance,1"}) {
-        const Outcome run = call("run " + rig + " --video none --seconds 1 --out " + out + " --script " +
-                                 folder.write("s.csv", std::string("t_s,action,value\n") + row + "\n"));
+        const Outcome run = call(scripted + folder.write("s.csv", std::string("t_s,action,value\n") + row + "\n"));
         EXPECT_EQ(run.code, 1) << row << ": " << run.text;
         EXPECT_TRUE(one_sentence(run)) << row;
         EXPECT_FALSE(std::filesystem::exists(out)) << row;
     }
+    const std::string into_out = "run --video none --seconds 1 --out " + out + " ";
     for (const std::string& mesh :
          {std::string(), std::string("\0\1\2\3\4", 5), std::string("solid nothing\nendsolid nothing\n"),
           std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")}) {
@@ -152,7 +154,7 @@ TEST(Program, ABadScriptOrMeshLeavesNoRunFolder) {
             folder.write(name, mesh);
             const std::string scene =
                 folder.write("mesh.toml", std::string("schema = 1\n[anatomy]\nmesh = '") + name + "'\nunit = 'mm'\n");
-            const Outcome run = call("run " + scene + " --video none --seconds 1 --out " + out);
+            const Outcome run = call(into_out + scene);
             EXPECT_EQ(run.code, 1) << name << ": " << run.text;
             EXPECT_EQ(run.text.rfind("terminate", 0), std::string::npos) << run.text;
             EXPECT_NE(run.text.find("cathlab: "), std::string::npos) << run.text;
@@ -170,10 +172,13 @@ TEST(Program, TheFilmIsTheSameOnAThreadOfItsOwn) {
     const TemporaryFolder folder;
     const std::string scene = std::string(CATHLAB_SOURCE_DIR) + "/scenes/rigs/fork.toml";
     std::vector<std::string> films;
+    const auto small_film = [&](const std::string& threads, const std::string& film) {
+        return call("run " + scene + " --seconds 1 --size 256x128 --video " + film + " --threads " + threads +
+                    " --out " + folder.path(threads));
+    };
     for (const char* threads : {"1", "2", "4"}) {
         const std::string film = folder.path(std::string(threads) + ".avi");
-        const Outcome run = call("run " + scene + " --seconds 1 --size 256x128 --video " + film + " --threads " +
-                                 threads + " --out " + folder.path(threads));
+        const Outcome run = small_film(threads, film);
         ASSERT_EQ(run.code, 0) << run.text;
         EXPECT_TRUE(std::filesystem::exists(folder.path(threads) + "/poster.png"));
         films.push_back(bytes_of(film));  // FFV1 loses nothing: equal bytes are equal pictures
@@ -187,8 +192,9 @@ TEST(Program, AFilmThatCannotBeWrittenIsOneSentence) {
     const TemporaryFolder folder;
     const std::string scene = std::string(CATHLAB_SOURCE_DIR) + "/scenes/rigs/fork.toml";
     const std::string out = folder.path("run");
+    const std::string into_out = "run " + scene + " --seconds 2 --out " + out + " --threads ";
     for (const char* threads : {"1", "3"}) {
-        const std::string command = "run " + scene + " --seconds 2 --threads " + threads + " --out " + out;
+        const std::string command = into_out + threads;
         const Outcome nowhere = call(command + " --video " + folder.path("none/film.avi"));
         EXPECT_EQ(nowhere.code, 1);
         EXPECT_TRUE(one_sentence(nowhere));

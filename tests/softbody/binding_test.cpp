@@ -107,8 +107,8 @@ TEST_F(Bound, TheSurfaceHasNoStepsWhereParticlesChangeHands) {
 }
 
 TEST_F(Bound, ACentreLineNodeRidesOnTheWallAroundIt) {
-    std::vector<Vec3> nodes;
-    for (int k = 0; k < 12; ++k) nodes.emplace_back(0.5 * k - 3.0, 0.4 * k - 2.0, 5.0 + 4.0 * k);
+    std::vector<Vec3> nodes(12);
+    for (int k = 0; k < 12; ++k) nodes[static_cast<std::size_t>(k)] = Vec3(0.5 * k - 3.0, 0.4 * k - 2.0, 5.0 + 4.0 * k);
     const PointBinding riding = bind_points(model, nodes, 12, false);
     for (std::size_t i = 0; i < nodes.size(); ++i)
         ASSERT_NEAR((evaluate(riding, i, model.rest) - nodes[i]).norm(), 0.0, 1e-9);

@@ -89,7 +89,8 @@ TEST(SoftBodyModel, ParametersOutOfRangeAreRefusedByName) {
     refused([](WallParameters& p) { p.cluster_spacing_mm = 0.0; }, "cluster_spacing_mm");
     refused([](WallParameters& p) { p.density_kg_mm3 = -1.0; }, "density_kg_mm3");
     refused([](WallParameters& p) { p.damping_per_s = -1.0; }, "damping_per_s");
-    refused([](WallParameters& p) { p.regions.emplace_back().cluster_stiffness = 1.5; }, "cluster_stiffness of a region");
+    refused([](WallParameters& p) { p.regions.emplace_back().cluster_stiffness = 1.5; },
+            "cluster_stiffness of a region");
     EXPECT_THROW(build_soft_body(WallSample{}, {}, nullptr), UserError);
 }
 
@@ -183,7 +184,8 @@ TEST(SoftBodyModel, ClustersOfOneOrTwoParticlesAndFlatOnesStayFinite) {
         last = next;
     }
     for (int k = 0; k < 16; ++k) {  // a plane
-        const Index here = add(Vec3(150 + 2 * (k % 4), 2 * (k / 4), 0));
+        const int column = k % 4, row = k / 4;
+        const Index here = add(Vec3(150.0 + 2.0 * column, 2.0 * row, 0.0));
         if (k % 4 > 0) sample.links.emplace_back(here - 1, here);
         if (k >= 4) sample.links.emplace_back(here - 4, here);
     }

@@ -26,7 +26,7 @@ inline WallSample sample(double radius = 12.0, double length = 60.0, bool closed
     return tube_sample(shape(radius, length, closed), spacing, 1.0, 7);
 }
 
-inline SoftBodyModel free_tube(WallParameters parameters = {}) {
+inline SoftBodyModel free_tube(const WallParameters& parameters = {}) {
     return build_soft_body(sample(), parameters, nullptr);
 }
 
