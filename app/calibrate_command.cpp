@@ -67,6 +67,14 @@ std::string best_text(const char* what, double value, const char* unit) {
     return std::string(what) + " " + plain_number(value, 3) + " " + unit + " so far";
 }
 
+// A line is searched by fewer than a space is.
+int usual_particles(const WallSearch& search) {
+    const std::size_t free =
+        search.free.empty() ? default_wall_bounds(search.scene, search.rig.stress).size() : search.free.size();
+    constexpr int most = 20, on_a_line = 8, on_a_plane = 14;
+    return free == 1 ? on_a_line : free == 2 ? on_a_plane : most;
+}
+
 // Stations stand in an anatomy, which may have to be built first.
 WallRig read_rig(const SceneSpec& scene, int threads, const AppContext& context) {
     catch_stop_signals();
@@ -101,6 +109,7 @@ void calibrate(const WallOptions& options, AppContext& context) {
     catch_stop_signals();
     Progress progress("calibrating the wall");
     search.swarm = options.swarm;
+    if (search.swarm.particles == 0) search.swarm.particles = usual_particles(search);
     search.polish_evaluations = options.polish;
     const double all = search.swarm.particles * (search.swarm.generations + 1.0) + search.polish_evaluations;
     double best = 0.0;
@@ -179,9 +188,12 @@ void calibrate(const HeartOptions& options, AppContext& context) {
 void add_common(CLI::App& command, CommonOptions& options) {
     command.add_option("--overlay", options.overlays, "a file laid over the scene first; may be given again")
         ->allow_extra_args(false);
-    command.add_option("--particles", options.swarm.particles, "of the swarm")
-        ->check(CLI::Range(2, 10000))
-        ->capture_default_str();
+    CLI::Option* particles = command.add_option("--particles", options.swarm.particles, "of the swarm");
+    particles->check(CLI::Range(2, 10000));
+    if (options.swarm.particles > 0)
+        particles->capture_default_str();
+    else
+        particles->default_str("20; 14 for two free numbers, 8 for one");
     command.add_option("--generations", options.swarm.generations, "of the swarm")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
@@ -209,7 +221,7 @@ void add_calibrate_command(CLI::App& app, AppContext& context) {
     command->require_subcommand(1);
 
     const auto wall = std::make_shared<WallOptions>();
-    wall->swarm.particles = 20;
+    wall->swarm.particles = 0;  // usual_particles()
     wall->swarm.generations = 15;
     wall->swarm.threads = default_threads();
     CLI::App* wall_command = command->add_subcommand("wall", "The wall, to a curve of stress and strain");

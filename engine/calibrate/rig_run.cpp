@@ -13,6 +13,7 @@
 #include "core/errors.h"
 #include "scene/wall_parameters.h"
 #include "softbody/binding.h"
+#include "softbody/observe.h"
 #include "softbody/solver.h"
 #include "step/step.h"
 #include "world/step_settings.h"
@@ -23,10 +24,13 @@ namespace {
 constexpr double step_s = 0.005;
 constexpr double velocity_kept = 0.9;  // a step; bleeding moves no equilibrium
 constexpr int steps_a_look = 5;
+constexpr int steps_an_elastic_look = 20;  // longer than from one halt to the next sight of motion
 constexpr int most_looks = 1000;
+constexpr double most_strain = 4.0;  // a wall that is wider than this runs away
 constexpr double trace_kpa_s_per_mm = 1e-6;
-constexpr double still_mm = 4e-4;       // the fastest particle in a look: the strain is then right to 3e-5
-constexpr double still_even_mm = 2e-6;  // of a guided piece, which moves as a whole and slowly
+constexpr double still_mm = 4e-4;          // the fastest particle in a look: the strain is then right to 3e-5
+constexpr double still_elastic_mm = 1e-3;  // in its longer look; the strain is then right to 2e-4
+constexpr double still_even_mm = 2e-6;     // of a guided piece, which moves as a whole and slowly
 
 /// The load as an effect of this one world: the step asks it where it asks every other.
 class RigLoad final : public Effect {
@@ -59,6 +63,7 @@ struct LoadedWall {
 Shared<SoftBodyModel> build_wall(const Specimen& specimen, const SceneSpec& scene) {
     WallParameters parameters = wall_parameters(scene.wall);
     parameters.surrounding_kpa_per_mm = 0.0;
+    if (parameters.form == WallForm::elastic) parameters.damping_per_s = 0.0;
     // A trace of what surrounds a wall moves no equilibrium, and keeps a piece that nothing holds where it is.
     const bool free = std::find(specimen.held.begin(), specimen.held.end(), 1) == specimen.held.end();
     parameters.surrounding_kpa_s_per_mm = free ? trace_kpa_s_per_mm : 0.0;
@@ -142,6 +147,27 @@ void set_load(LoadedWall& wall, RigStress stress, double stress_kpa) {
     }
 }
 
+double widest(const LoadedWall& wall) {
+    double strain = 0.0;
+    for (const Gauge& gauge : wall.specimen.gauges) strain = std::max(strain, gauge.strain(wall.state().x));
+    return strain;
+}
+
+/// Whether the wall as a whole slows down: it has passed an equilibrium on some way.  Stopped there, and only there, an
+/// elastic wall, whose slow shapes would creep if its speeds were bled, comes to rest soonest; it moves no equilibrium.
+class Pace {
+public:
+    bool slows(const SoftBodyModel& wall, const SoftBodyState& state) {
+        const double energy = kinetic_energy(wall, state);
+        const bool slower = energy < last_;
+        last_ = slower ? 0.0 : energy;
+        return slower;
+    }
+
+private:
+    double last_ = 0.0;
+};
+
 /// Takes energy out between two steps: speeds are bled, and a particle that turns back has passed its place and is
 /// stopped.  Neither moves an equilibrium, and the second ends what would swing from step to step.
 void bleed(std::span<Vec3> v, std::vector<Vec3>& last) {
@@ -155,21 +181,27 @@ void bleed(std::span<Vec3> v, std::vector<Vec3>& last) {
 
 bool come_to_rest(LoadedWall& wall, RigStress stress, double stress_kpa, const std::function<bool()>& stop) {
     SoftBodyState& state = wall.state();
-    const double still = wall.specimen.guide ? still_even_mm : still_mm;
     const Input nothing;
     Channels channels;
     std::vector<Vec3> last_speed;
+    const SoftBodyModel& model = **wall.world->first<Shared<SoftBodyModel>>();
+    const bool elastic = model.form == WallForm::elastic;
+    const double still = wall.specimen.guide ? still_even_mm : elastic ? still_elastic_mm : still_mm;
+    Pace pace;
     for (int look = 0; look < most_looks; ++look) {
         if (stop && stop()) return false;
         set_load(wall, stress, stress_kpa);
         const std::vector<Vec3> before = state.x;
-        for (int k = 0; k < steps_a_look; ++k) {
+        for (int k = 0; k < (elastic ? steps_an_elastic_look : steps_a_look); ++k) {
             step(*wall.world, nothing, channels);
-            bleed(state.v, last_speed);
+            if (!elastic)
+                bleed(state.v, last_speed);
+            else if (pace.slows(model, state))
+                state.v.assign(state.v.size(), Vec3::Zero());
             if (wall.specimen.guide) wall.specimen.guide(state.x, state.v);
         }
         const double moved = largest_move(state.x, before);
-        if (std::isnan(moved)) return false;
+        if (std::isnan(moved) || widest(wall) > most_strain) return false;
         if (moved < still) return true;
     }
     return false;

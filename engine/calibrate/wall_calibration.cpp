@@ -98,11 +98,41 @@ std::vector<std::vector<double>> strain_or_nan(const StressStrain& reference, co
                     " came to rest nowhere in the ranges given: it is too soft for the reference's stress");
 }
 
+bool stiffens(const SceneSpec& scene) {
+    return std::any_of(scene.effects.begin(), scene.effects.end(),
+                       [](const SceneEffect& effect) { return effect.enabled && effect.info->elastic_wall; });
+}
+
+/// The numbers found, and those that an elastic wall has beside them: laid over any scene they make this wall.
+std::string whole_overlay(const SceneSpec& scene, std::vector<std::string> paths) {
+    if (scene.wall.form == "elastic") {
+        const auto add = [&](const std::string& path) {
+            if (std::find(paths.begin(), paths.end(), path) == paths.end()) paths.push_back(path);
+        };
+        add("wall.young_kpa");
+        add("wall.poisson");
+        for (const SceneEffect& effect : scene.effects)
+            for (const Parameter& parameter : effect.info->parameters)
+                if (effect.enabled && effect.info->elastic_wall)
+                    add("effects." + std::string(effect.info->name) + "." + std::string(parameter.key));
+    }
+    std::vector<double> values;
+    for (const std::string& path : paths) values.push_back(get_named(scene, path));
+    std::string text = overlay_text(paths, values);
+    const std::string section = "[wall]\n";
+    if (scene.wall.form == "elastic") text.insert(text.find(section) + section.size(), "form = \"elastic\"\n");
+    return text;
+}
+
 }  // namespace
 
-std::vector<Bound> default_wall_bounds(const SceneWall& wall, RigStress stress) {
+std::vector<Bound> default_wall_bounds(const SceneSpec& scene, RigStress stress) {
     const bool pushed_hard = stress == RigStress::paper;
-    if (wall.form == "elastic")
+    if (scene.wall.form == "elastic" && stiffens(scene))
+        return {named_bound("wall.young_kpa", pushed_hard ? 300.0 : 30.0, pushed_hard ? 2000.0 : 200.0),
+                named_bound("effects.stiffening.fibre_kpa", pushed_hard ? 50.0 : 5.0, pushed_hard ? 500.0 : 50.0),
+                named_bound("effects.stiffening.exponent", 0.3, 4.0)};
+    if (scene.wall.form == "elastic")
         return {named_bound("wall.young_kpa", pushed_hard ? 500.0 : 50.0, pushed_hard ? 30000.0 : 3000.0)};
     return {named_bound("wall.cluster_spacing_mm", 4.0, 14.0), named_bound("wall.cluster_radius_mm", 6.0, 24.0),
             named_bound("wall.cluster_stiffness", pushed_hard ? 0.8 : 0.3, pushed_hard ? 0.999 : 0.97)};
@@ -152,7 +182,7 @@ WallCalibration calibrate_wall(const StressStrain& reference, const WallSearch& 
     check(reference);
     check_against(reference, wanted.rig);
     WallSearch search = wanted;
-    if (search.free.empty()) search.free = default_wall_bounds(search.scene.wall, search.rig.stress);
+    if (search.free.empty()) search.free = default_wall_bounds(search.scene, search.rig.stress);
     check_free(search.free);
     const auto scene_at = [&](std::span<const double> x) {
         SceneSpec scene = search.scene;
@@ -209,7 +239,7 @@ WallCalibration calibrate_wall(const StressStrain& reference, const WallSearch& 
     for (std::size_t g = 0; g < names.size(); ++g)
         out.gauges.push_back({names[g], first[g], strain[g], figures_of(first[g], reference.strain),
                               figures_of(strain[g], reference.strain)});
-    out.overlay = overlay_text(paths, best.best);
+    out.overlay = whole_overlay(scene_at(best.best), paths);
     return out;
 }
 

@@ -45,9 +45,10 @@ struct WallCalibration {
 };
 
 /// Clusters: s_c 4 to 14 mm, r_c 6 to 24 mm, t_c 0.3 to 0.97, round the best values of [li2025] (8 mm, 12 mm, 0.8).
-/// Elastic form: Young's modulus 50 to 3000 kPa.  Under the paper's traction, which stresses the wall r0 / t0 times as
-/// much, t_c 0.8 to 0.999 and 500 to 30000 kPa.
-std::vector<Bound> default_wall_bounds(const SceneWall& wall, RigStress stress);
+/// Elastic form: Young's modulus 50 to 3000 kPa; with the effect stiffening 30 to 200 kPa, its fibres 5 to 50 kPa,
+/// exponent 0.3 to 4.  Under the paper's traction, which stresses the wall r0 / t0 times as much, t_c 0.8 to 0.999 and
+/// ten times the moduli.
+std::vector<Bound> default_wall_bounds(const SceneSpec& scene, RigStress stress);
 
 /// Paths that change a wall under load: numbers of [wall] and of the effects that act on a wall by itself.
 std::vector<std::string> wall_paths();

@@ -10,7 +10,7 @@ namespace cathlab {
 namespace {
 
 constexpr std::size_t n = kernel::lanes;
-constexpr double largest_eigenvalue = 1.5;  // of stiffness over k
+constexpr double largest_eigenvalue = 1.25;  // of stiffness over k
 constexpr int power_rounds = 60;
 constexpr double safety = 1.05;            // the power method comes from below
 constexpr std::size_t sorting_block = 32;  // groups within which triangles of like patches stand together

@@ -82,7 +82,7 @@ rig::Wall held_tube(const WallParameters& parameters = elastic()) {
 
 /// Steps until the wall stands still.  Whenever its motion slows down it has passed an equilibrium on some way, and is
 /// stopped there: that moves no equilibrium.
-void settle(rig::Wall& wall, double h, int iterations, std::span<const Vec3> load, double still_mm = 1e-5) {
+void settle(rig::Wall& wall, double h, int iterations, std::span<const Vec3> load, double still_mm = 3e-6) {
     constexpr int look = 20, most = 6000;
     double last = 0.0;
     for (int k = 0; k < most; ++k) {
@@ -140,8 +140,8 @@ TEST(ElasticWall, ItComesToRestWhereTheShellDoes) {
         worst = std::max(worst, (x[i] - wall.state.x[i]).norm());
         largest = std::max(largest, (x[i] - wall.model.rest[i]).norm());
     }
-    EXPECT_LT(worst, 2e-3 * largest);
-    EXPECT_NEAR(strain(wall.model, wall.state.x) / strain(wall.model, x), 1.0, 2e-4);
+    EXPECT_LT(worst, 5e-3 * largest);
+    EXPECT_NEAR(strain(wall.model, wall.state.x) / strain(wall.model, x), 1.0, 3e-4);
 }
 
 TEST(ElasticWall, StepIterationsAndClustersDoNotChangeTheStrain) {
