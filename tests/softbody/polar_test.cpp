@@ -3,7 +3,9 @@
 
 #include <Eigen/SVD>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 
 #include "core/random.h"
@@ -16,20 +18,28 @@ namespace {
 constexpr int lanes = static_cast<int>(kernel::lanes);
 
 struct Batch {
-    std::array<double, 9 * lanes> matrix{};
-    std::array<double, 4 * lanes> quaternion{};
+    std::array<double, 9 * kernel::lanes> matrix{};
+    std::array<double, 4 * kernel::lanes> quaternion{};
 
     Batch() {
         for (int l = 0; l < lanes; ++l) quaternion[static_cast<std::size_t>(l)] = 1.0;
     }
+    /// Of the k-th number of a lane.
+    static std::size_t at(int k, int lane) {
+        return static_cast<std::size_t>(k) * kernel::lanes + static_cast<std::size_t>(lane);
+    }
     void set(int lane, const Mat3& a) {
-        for (int k = 0; k < 9; ++k) matrix[static_cast<std::size_t>(k * lanes + lane)] = a(k / 3, k % 3);
+        for (int k = 0; k < 9; ++k) matrix[at(k, lane)] = a(k / 3, k % 3);
     }
     Mat3 rotation(int lane) const {
-        const auto q = [&](int k) { return quaternion[static_cast<std::size_t>(k * lanes + lane)]; };
+        const auto q = [&](int k) { return quaternion[at(k, lane)]; };
         return Quat(q(0), q(1), q(2), q(3)).toRotationMatrix();
     }
 };
+
+std::array<std::uint64_t, 4 * kernel::lanes> bits(const Batch& batch) {
+    return std::bit_cast<std::array<std::uint64_t, 4 * kernel::lanes>>(batch.quaternion);
+}
 
 Mat3 random_matrix(std::uint64_t index) {
     Mat3 a;
@@ -58,7 +68,7 @@ double worst_error(kernel::Polar polar, int batches, double least_margin, bool i
         Batch batch;
         std::array<Mat3, lanes> matrices;
         for (int l = 0; l < lanes; ++l) {
-            Mat3 a = random_matrix(static_cast<std::uint64_t>(b * lanes + l));
+            Mat3 a = random_matrix(Batch::at(b, l));
             if ((a.determinant() < 0.0) != inverted) a.row(0) *= -1.0;
             matrices[static_cast<std::size_t>(l)] = a;
             batch.set(l, a);
@@ -127,16 +137,16 @@ TEST(Polar, EveryInstructionSetGivesTheSameBits) {
     for (int b = 0; b < 500; ++b) {
         Batch one, two;
         for (int l = 0; l < lanes; ++l) {
-            const Mat3 a = random_matrix(static_cast<std::uint64_t>(b * lanes + l)) * (l == 3 ? 0.0 : 1.0);
+            const Mat3 a = random_matrix(Batch::at(b, l)) * (l == 3 ? 0.0 : 1.0);
             one.set(l, a);
             two.set(l, a);
         }
         kernel::baseline().polar_double(one.matrix.data(), one.quaternion.data());
         wide->polar_double(two.matrix.data(), two.quaternion.data());
-        ASSERT_EQ(std::memcmp(one.quaternion.data(), two.quaternion.data(), sizeof one.quaternion), 0);
+        ASSERT_EQ(bits(one), bits(two));
         kernel::baseline().polar_float(one.matrix.data(), one.quaternion.data());
         wide->polar_float(two.matrix.data(), two.quaternion.data());
-        ASSERT_EQ(std::memcmp(one.quaternion.data(), two.quaternion.data(), sizeof one.quaternion), 0);
+        ASSERT_EQ(bits(one), bits(two));
     }
 }
 
