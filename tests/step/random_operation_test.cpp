@@ -90,19 +90,19 @@ std::string models_folder() {
     return error ? "" : (program.parent_path() / "models").string();
 }
 
-void operate_with_every_seed(const SceneSpec& spec, double seconds) {
+void operate_with_every_seed(const SceneSpec& spec, double seconds, std::uint64_t last = seeds) {
     BuildOptions options;
     options.cache_folder = models_folder();
     const auto models = build_models(spec, options);
-    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    for (std::uint64_t seed = 1; seed <= last; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         operate_at_random(spec, *models, seed, seconds);
     }
 }
 
-TEST(RandomFullSpeedOperation, NeverLeavesTheAdultsVessels) {
+SceneSpec adult() {
     const TemporaryFolder folder;
-    const SceneSpec spec = load_scene(folder.write("adult.toml", R"(
+    return load_scene(folder.write("adult.toml", R"(
 schema = 1
 name = "full-speed"
 [anatomy]
@@ -121,8 +121,17 @@ insertion_mm = 20
 enabled = true
 [effects.respiration]
 )"),
-                                      {}, CATHLAB_SOURCE_DIR);
-    operate_with_every_seed(spec, run_seconds(6.0));
+                      {}, CATHLAB_SOURCE_DIR);
+}
+
+TEST(RandomFullSpeedOperation, NeverLeavesTheAdultsVessels) {
+    operate_with_every_seed(adult(), run_seconds(6.0));
+}
+
+TEST(RandomFullSpeedOperation, NeverLeavesTheAdultsVesselsOfElasticWall) {
+    SceneSpec spec = adult();
+    spec.wall.form = "elastic";
+    operate_with_every_seed(spec, run_seconds(3.0), 2);
 }
 
 TEST(RandomFullSpeedOperation, NeverLeavesThePatientsVessels) {
