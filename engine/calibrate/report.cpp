@@ -109,7 +109,8 @@ std::string rig_text(const WallRig& rig) {
         case RigKind::stations: break;
     }
     return std::to_string(rig.stations->stations.size()) + " stations of the anatomy '" + rig.stations->anatomy +
-           "'; at each the wall is pushed away from the centre-line over two radii of the lumen to either side, and "
+           "'; at each the wall is pushed away from the centre-line over two and a half radii of the lumen to either "
+           "side, and "
            "the "
            "strain (r - r0) / r0 is read half a radius to either side.";
 }

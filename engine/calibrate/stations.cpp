@@ -115,7 +115,7 @@ private:
         if (-station.arc.front() < wish || station.arc.back() < wish)
             throw UserError(where, "'" + station.name + "' has " + text(-station.arc.front()) + " and " +
                                        text(station.arc.back()) + " of vessel to its sides; the wall is pushed over " +
-                                       text(wish) + " (two radii of the lumen) to either side");
+                                       text(wish) + " (two and a half radii of the lumen) to either side");
         return station;
     }
 

@@ -13,7 +13,7 @@ namespace cathlab {
 
 /// A place of the centre-line with the stretch of vessel round it, in units of the lumen's radius there:
 inline constexpr double station_read_radii = 0.5;    ///< strain is read so far to either side
-inline constexpr double station_loaded_radii = 2.0;  ///< the wall is pushed so far
+inline constexpr double station_loaded_radii = 2.5;  ///< the wall is pushed so far
 inline constexpr double station_kept_radii = 3.0;    ///< there the piece ends, and is held
 
 struct Station {

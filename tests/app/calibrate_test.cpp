@@ -74,6 +74,24 @@ TEST(Calibrate, TheWallLeavesAnOverlayThatASceneTakesAndAReport) {
         0);
 }
 
+TEST(Calibrate, TheWallIsFittedOnAnyRigThatASceneDescribes) {
+    const TemporaryFolder folder;
+    for (const char* rig : {"ring", "strip", "block"}) {
+        const Outcome done = call("calibrate wall " + curve(folder) + quick(folder) + " --polish 0 --rig " +
+                                  CATHLAB_SOURCE_DIR + "/scenes/rigs/" + rig + ".toml --report " + folder.path(rig));
+        ASSERT_EQ(done.code, 0) << done.text;
+        EXPECT_NE(text_of(folder.path(rig) + "/report.html").find(std::string("a ") + rig), std::string::npos);
+    }
+    const std::string tube = std::string(CATHLAB_SOURCE_DIR) + "/scenes/rigs/stress_strain-anatomy.toml";
+    const std::string stations =
+        folder.write("stations.toml", "schema = 1\n[anatomy]\nfile = \"" + tube +
+                                          "\"\n[[rig.station]]\nname = \"middle\"\nregion = \"tube\"\n");
+    const Outcome done = call("calibrate wall " + curve(folder) + quick(folder) + " --polish 0 --rig " + stations);
+    ASSERT_EQ(done.code, 0) << done.text;
+    EXPECT_NE(done.text.find("Strain at the stations"), std::string::npos) << done.text;
+    EXPECT_NE(done.text.find("middle"), std::string::npos) << done.text;
+}
+
 TEST(Calibrate, TheHeartLeavesAnOverlayThatASceneRunsWith) {
     const TemporaryFolder folder;
     const Outcome done =
@@ -108,6 +126,21 @@ TEST(Calibrate, WhatIsWrongIsOneSentenceAndLeavesNothing) {
     refused("wall " + fine + quick(folder) + " --range 100", 2, "LOW:HIGH");
     refused("wall " + fine + quick(folder) + " --omega nan", 2, "finite");
     refused("wall " + fine + quick(folder) + " --scene nowhere", 1, "no scene");
+    refused("wall " + fine + quick(folder) + " --rig nowhere", 1, "no scene");
+    const std::string pressed = folder.write("pressed.csv", "stress_kpa,strain\n-1,-0.1\n-2,-0.2\n-3,-0.3\n");
+    refused("wall " + pressed + quick(folder), 1, "pressed.csv:2");
+    refused("wall " + pressed + quick(folder), 1, "block.toml");
+    const std::string rigs = std::string(CATHLAB_SOURCE_DIR) + "/scenes/rigs/";
+    refused("wall " + fine + quick(folder) + " --stress paper --rig " + rigs + "strip.toml", 1, "round wall");
+    const auto rig_file = [&](const std::string& rig) {
+        return folder.write("rig.toml", "schema = 1\n[anatomy]\nfile = \"" + rigs +
+                                            "stress_strain-anatomy.toml\"\n[rig]\nkind = \"stations\"\n" + rig);
+    };
+    refused("wall " + fine + quick(folder) + " --rig " + rig_file("[[rig.station]]\nname = \"a\"\nregion = \"tub\"\n"),
+            1, "did you mean 'tube'");
+    refused("wall " + fine + quick(folder) + " --rig " +
+                rig_file("[[rig.station]]\nname = \"a\"\nregion = \"tube\"\nplace_mm = 3.0\n"),
+            1, "rig.toml:6");
     refused("wall " + fine + " --out " + other, 1, "not written by a calibration");
     refused("wall " + fine + " --out " + folder.path("none/o.toml"), 1, "there is no folder");
     refused("wall " + fine + " --out " + folder.path(), 1, "is a folder");

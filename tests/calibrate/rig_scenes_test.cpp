@@ -39,6 +39,22 @@ TEST(RigScenes, EveryRigGivesWayUnderItsLoad) {
     }
 }
 
+TEST(RigScenes, OfATreeTheWideVesselHasAStationAndHeartAndBreathingLeaveItAlone) {
+    SceneSpec scene = rig_scene("fork");  // its heart beats, and it breathes
+    scene.rig.kind = "stations";
+    scene.wall.particle_spacing_mm = 3.0;
+    const WallRig rig = wall_rig(scene);
+    ASSERT_EQ(gauge_names(rig), std::vector<std::string>{"trunk"});
+    const std::vector<double> stress{20.0, 40.0};
+    const auto strain = rig_strain(rig, scene, stress).at(0);
+    EXPECT_GT(strain[0], 0.005);
+    EXPECT_GT(strain[1], 1.5 * strain[0]);
+    SceneSpec quiet = scene;
+    quiet.heart.enabled = false;
+    quiet.effects = all_effects_off();
+    EXPECT_EQ(rig_strain(rig, quiet, stress).at(0), strain);
+}
+
 TEST(RigScenes, ABlockIsPressedAsItIsPulled) {
     const SceneSpec scene = rig_scene("block");
     WallRig rig = wall_rig(scene);
