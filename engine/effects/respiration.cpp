@@ -63,7 +63,7 @@ EffectInfo respiration_effect() {
         .parameters =
             {
                 {"amplitude_mm", "mm", 6.0, 0.0, 40.0, "displacement at end-inspiration above the diaphragm"},
-                {"period_s", "s", 4.0, 1.2, 15.0, "one breath: 4 to 50 a minute"},
+                {"period_s", "s", 4.0, 1.2, 8.0, "one breath: 7.5 to 50 a minute"},
                 {"phase", "1", 0.0, 0.0, 1.0, "phase of the breath at time 0; 0 = end-expiration"},
                 {"direction_x", "1", 0.0, -1.0, 1.0, "direction at inspiration, patient's left"},
                 {"direction_y", "1", -0.3, -1.0, 1.0, "direction at inspiration, posterior"},

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
+#include <numeric>
 
 #include "core/errors.h"
 #include "explain/data_csv.h"
@@ -63,6 +65,54 @@ void find_tendons(const std::string& file, Dataset& out) {
         }
 }
 
+/// Rows of one run one after another, in the order in which the runs appear.
+void join_runs(Dataset& out) {
+    if (std::is_sorted(out.run.begin(), out.run.end())) return;
+    std::vector<std::size_t> order(out.rows());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return out.run[a] < out.run[b]; });
+    const auto arrange = [&](auto& values) {
+        auto old = values;
+        for (std::size_t i = 0; i < order.size(); ++i) values[i] = old[order[i]];
+    };
+    arrange(out.run);
+    arrange(out.time_s);
+    if (!out.held_out.empty()) arrange(out.held_out);
+    for (DataColumn& column : out.columns) arrange(column.values);
+    for (LabelColumn& label : out.labels) arrange(label.values);
+}
+
+/// What was done is needed at every row, since devices remember: an input that is missing stays as it was last (at the
+/// beginning as it is first), and what was measured at such a row counts as missing.  Throws UserError where a run has
+/// no value of an input at all.
+void hold_inputs(const std::string& file, Dataset& out) {
+    std::vector<std::uint8_t> unknown(out.rows(), 0);
+    for (DataColumn& column : out.columns) {
+        if (column.role != ColumnRole::input) continue;
+        for (std::size_t begin = 0, end = 0; begin < out.rows(); begin = end) {
+            while (end < out.rows() && out.run[end] == out.run[begin]) ++end;
+            const auto first = column.values.begin() + static_cast<std::ptrdiff_t>(begin);
+            const auto last = column.values.begin() + static_cast<std::ptrdiff_t>(end);
+            const auto known = std::find_if(first, last, [](double v) { return !std::isnan(v); });
+            if (known == last)
+                throw UserError({file, 0, "column " + column.name},
+                                "has no value in run " + out.run_names[static_cast<std::size_t>(out.run[begin])]);
+            double held = *known;
+            for (std::size_t i = begin; i < end; ++i) {
+                if (std::isnan(column.values[i])) {
+                    unknown[i] = 1;
+                    column.values[i] = held;
+                }
+                held = column.values[i];
+            }
+        }
+    }
+    for (DataColumn& column : out.columns)
+        for (std::size_t i = 0; i < out.rows(); ++i)
+            if (column.role == ColumnRole::measured && unknown[i] != 0)
+                column.values[i] = std::numeric_limits<double>::quiet_NaN();
+}
+
 void read_description(const fs::path& file, Dataset& out) {
     const TomlNode toml = load_toml(file.string());
     refuse_unknown(toml, {"format", "kind", "title", "source", "license", "declared_effects", "sensor_noise", "setup"});
@@ -118,6 +168,8 @@ Dataset read_dataset(const std::string& folder) {
     read_description(path / "dataset.toml", out);
     read_data_csv((path / "data.csv").string(), out);
     if (out.kind == "tendon-tip") find_tendons((path / "dataset.toml").string(), out);
+    join_runs(out);
+    if (out.kind == "catheter-tip" || out.kind == "tendon-tip") hold_inputs((path / "data.csv").string(), out);
     if (!out.heart.beat_times_s.empty() && out.heart.beat_times_s.size() != out.run_names.size())
         throw UserError({(path / "dataset.toml").string(), 0, "setup.beat_times_s"},
                         "found " + std::to_string(out.heart.beat_times_s.size()) + " lists for " +
