@@ -1,6 +1,8 @@
 #include "imaging/image.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -29,21 +31,13 @@ Image8 copy_of(const cv::Mat& rgb) {
     return image;
 }
 
-}  // namespace
-
-void write_png(const std::string& path, const Image8& image) {
-    CATHLAB_CHECK(image.width > 0 && image.height > 0, "an empty image cannot be written");
-    cv::Mat bgr;
-    cv::cvtColor(view_of(image), bgr, cv::COLOR_RGB2BGR);
-    std::vector<std::uint8_t> bytes;
-    CATHLAB_CHECK(cv::imencode(".png", bgr, bytes, {cv::IMWRITE_PNG_COMPRESSION, 4}), "PNG encoder failed");
-
+void write_whole(const std::string& path, const void* data, std::size_t size) {
     const std::string part = path + ".part";
     std::error_code ignored;
     {
         std::ofstream file(part, std::ios::binary | std::ios::trunc);
         if (!file) throw UserError("cannot write '" + path + "': the folder is missing or not writable");
-        file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
         file.flush();
         if (!file) {
             file.close();
@@ -57,6 +51,37 @@ void write_png(const std::string& path, const Image8& image) {
         std::filesystem::remove(part, ignored);
         throw UserError("cannot write '" + path + "': " + error.message());
     }
+}
+
+void write_encoded(const std::string& path, const cv::Mat& picture) {
+    std::vector<std::uint8_t> bytes;
+    CATHLAB_CHECK(cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 4}), "PNG encoder failed");
+    write_whole(path, bytes.data(), bytes.size());
+}
+
+}  // namespace
+
+void write_png(const std::string& path, const Image8& image) {
+    CATHLAB_CHECK(image.width > 0 && image.height > 0, "an empty image cannot be written");
+    cv::Mat bgr;
+    cv::cvtColor(view_of(image), bgr, cv::COLOR_RGB2BGR);
+    write_encoded(path, bgr);
+}
+
+void write_png16(const std::string& path, const ImageF& image, double scale) {
+    CATHLAB_CHECK(image.width > 0 && image.height > 0, "an empty image cannot be written");
+    cv::Mat grey(image.height, image.width, CV_16UC1);
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x)
+            grey.at<std::uint16_t>(y, x) =
+                static_cast<std::uint16_t>(std::clamp(std::lround(scale * image.at(x, y)), 0L, 65535L));
+    }
+    write_encoded(path, grey);
+}
+
+void write_floats(const std::string& path, const ImageF& image) {
+    static_assert(std::endian::native == std::endian::little);
+    write_whole(path, image.values.data(), image.values.size() * sizeof(float));
 }
 
 Image8 read_png(const std::string& path) {

@@ -41,6 +41,12 @@ struct ImageF {
 /// Throws UserError where the folder is missing, unwritable or full.
 void write_png(const std::string& path, const Image8& image);
 
+/// One channel of 16 bits: round(scale * value), 0 to 65535.  Throws as write_png.
+void write_png16(const std::string& path, const ImageF& image, double scale);
+
+/// The values as they are: 32-bit floats, little endian, rows from the top, nothing else.  Throws as write_png.
+void write_floats(const std::string& path, const ImageF& image);
+
 /// Reads any PNG as RGB; throws UserError where the file is missing or not a PNG.
 Image8 read_png(const std::string& path);
 

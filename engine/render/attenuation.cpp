@@ -29,6 +29,15 @@ BinValues BeamTable::attenuation(const std::string& name) const {
     return known_[name] = mu;
 }
 
+double BeamTable::water_mm(double transmission) const {
+    double low = 0.0, high = 800.0;
+    for (int i = 0; i < 30; ++i) {
+        const double middle = 0.5 * (low + high);
+        (signal_transmission(spectrum_, middle) > transmission ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
 BinValues BeamTable::iodine() const {
     BinValues mu = attenuation("iodine");
     for (float& m : mu) m *= 1e-3F;  // the table's density is 1 g/cm3 = 1000 mg/mL

@@ -22,6 +22,8 @@ public:
     const BinValues& weights() const { return weights_; }
     /// Detected photons per mm2 and nGy of detector kerma behind a patient of 200 mm of water.
     double photons_per_mm2_ngy() const { return photons_; }
+    /// Water through which a share `transmission` of the detector's signal gets, mm, 0 to 800: what a patient is worth.
+    double water_mm(double transmission) const;
     /// Linear attenuation coefficient in 1/mm per bin; "air" is 0.
     /// Throws UserError with the nearest name for a material that is not in the table.
     BinValues attenuation(const std::string& material) const;

@@ -13,11 +13,13 @@
 #include "render/device_chords.h"
 #include "render/fast_math.h"
 #include "render/gl_device.h"
+#include "render/image_intensifier.h"
 #include "render/path_lengths.h"
 #include "render/path_raster.h"
 #include "render/path_surface.h"
 #include "render/pixel_loops.h"
 #include "render/projection.h"
+#include "render/scatter.h"
 
 namespace cathlab {
 
@@ -41,6 +43,11 @@ double generator_kvp(const FrameExposure& e) {
     return std::round(e.kvp);
 }
 
+double magnification(const CArmView& view, const Projection& projection) {
+    return view.source_isocentre_mm > 0 ? projection.source_detector_mm() / view.source_isocentre_mm
+                                        : usual_magnification;
+}
+
 struct ViewKey {
     std::vector<double> numbers;
     bool operator==(const ViewKey&) const = default;
@@ -53,14 +60,15 @@ void append(ViewKey& key, const Vec3& v) {
 ViewKey view_key(const FrameDescription& f, int width, int height) {
     ViewKey key;
     for (const Vec3& v : {f.view.source, f.view.detector_center, f.view.right, f.view.down}) append(key, v);
-    key.numbers.insert(key.numbers.end(), {f.view.width_mm, f.view.height_mm, double(width), double(height)});
+    key.numbers.insert(key.numbers.end(),
+                       {f.view.width_mm, f.view.height_mm, f.view.source_isocentre_mm, double(width), double(height)});
     return key;
 }
 
 ViewKey context_key(const FrameDescription& f, int width, int height) {
     ViewKey key = view_key(f, width, height);
     key.numbers.insert(key.numbers.end(),
-                       {generator_kvp(f.exposure), f.exposure.copper_mm, f.exposure.scatter_to_primary,
+                       {generator_kvp(f.exposure), f.exposure.copper_mm, f.exposure.scatter_to_primary.value_or(-1.0),
                         f.exposure.measuring_field, double(f.solids_revision)});
     for (const FrameSolid& solid : f.solids) {
         if (solid.moving) continue;
@@ -214,14 +222,25 @@ void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection
             context_intensity.values[i] = sum;
         }
     });
-    scatter = wide_blur(context_intensity, scatter_sigma_mm / projection.pixel_mm());
-    for (float& s : scatter.values) s *= static_cast<float>(f.exposure.scatter_to_primary);
-
-    // The measuring field holds the detector's kerma; a coarse picture of the logarithm evens out lung and spine.
     const double side = std::clamp(f.exposure.measuring_field, 0.05, 1.0);
     const auto inside = [&](int v, int n) { return std::fabs((v + 0.5) / n - 0.5) <= 0.5 * side; };
     double sum = 0, sum_of_logs = 0;
     std::size_t pixels = 0;
+    for (int y = 0; y < projection.height(); ++y) {
+        for (int x = 0; x < width; ++x) {
+            if (!inside(y, projection.height()) || !inside(x, width)) continue;
+            sum += context_intensity.at(x, y);
+            ++pixels;
+        }
+    }
+    const double water_mm = beam->water_mm(sum / static_cast<double>(pixels));
+    const double lit_mm = projection.pixel_mm() * width / magnification(f.view, projection);
+    const double share = f.exposure.scatter_to_primary.value_or(scatter_to_primary(water_mm, lit_mm));
+    scatter = wide_blur(context_intensity, scatter_sigma_mm / projection.pixel_mm());
+    for (float& s : scatter.values) s *= static_cast<float>(share);
+
+    // The measuring field holds the detector's kerma; a coarse picture of the logarithm evens out lung and spine.
+    sum = 0;
     ImageF logs(width, projection.height());
     for (int y = 0; y < projection.height(); ++y) {
         for (int x = 0; x < width; ++x) {
@@ -231,7 +250,6 @@ void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection
             if (inside(y, projection.height()) && inside(x, width)) {
                 sum += total;
                 sum_of_logs += logs.values[i];
-                ++pixels;
             }
         }
     }
@@ -351,15 +369,16 @@ void Fluoroscope::Impl::detect(const FrameDescription& f, const Projection& proj
     const double photons = kerma * beam->photons_per_mm2_ngy() * area;
     photons_of_kerma = e.detector_kerma_ngy * beam->photons_per_mm2_ngy() * area;
     signal = intensity;
-    const double magnified = (usual_magnification - 1) * e.focal_spot_mm;
+    const double magnified = (magnification(f.view, projection) - 1) * e.focal_spot_mm;
     blur(signal, 0.29 * magnified / projection.pixel_mm(), workers);  // 0.29 = sigma of a unit box
     const auto gain = static_cast<float>(photons);
     workers.for_ranges(signal.values.size(), 16384, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) signal.values[i] *= gain;
     });
     add_quantum_noise(signal, f.seed, f.frame_index, workers);
-    blur(signal, e.blur_sigma_mm / projection.pixel_mm(), workers);
-    add_electronic_noise(signal, e.electronic_noise_photons, f.seed, f.frame_index, workers);
+    blur(signal, e.detector.blur_sigma_mm / projection.pixel_mm(), workers);
+    distort(signal, e.detector, projection.pixel_mm(), workers);
+    add_electronic_noise(signal, e.detector.electronic_noise_photons, f.seed, f.frame_index, workers);
     recurse(history, signal, e.recursion, workers);
 }
 
@@ -433,6 +452,12 @@ const ImageF& Fluoroscope::intensity() const {
 }
 const ImageF& Fluoroscope::detected() const {
     return impl_->signal;
+}
+const std::vector<std::uint8_t>& Fluoroscope::grey() const {
+    return impl_->grey;
+}
+double Fluoroscope::wanted_photons() const {
+    return impl_->photons_of_kerma;
 }
 std::size_t Fluoroscope::bad_pixels() const {
     return impl_->bad;

@@ -28,6 +28,10 @@ public:
     const ImageF& intensity() const;
     /// What the detector read in the last frame, in detected photons a pixel: with noise and blur, before recursion.
     const ImageF& detected() const;
+    /// The last picture, as draw() gave it.
+    const std::vector<std::uint8_t>& grey() const;
+    /// Detected photons a pixel that the last frame's kerma means.
+    double wanted_photons() const;
     /// Rays of the last frame whose entries and exits do not match (open surfaces); must be 0.
     std::size_t bad_pixels() const;
     /// Brings the next frame to a fresh start (a new run).

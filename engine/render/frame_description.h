@@ -21,6 +21,7 @@ struct CArmView {
     Vec3 down = Vec3(0, 0, -1);  ///< unit vector down the image, orthogonal to right
     double width_mm = 300.0;     ///< extent of the picture at the detector
     double height_mm = 300.0;
+    double source_isocentre_mm = 0.0;  ///< sets the focal spot's blur, M = SID / SOD; 0: M = 1.45
 };
 
 /// A closed solid of the torso.  mesh in the solid's own frame, outward.
@@ -59,23 +60,35 @@ struct FrameDevice {
     Vec3 color = Vec3(0.75, 0.78, 0.82);  ///< linear RGB for the optical views
 };
 
+/// What turns X-rays into a picture.  As it stands: a flat panel.
+struct FrameDetector {
+    double blur_sigma_mm = 0.18;            ///< of the scintillator's Gaussian point spread, at the detector
+    double electronic_noise_photons = 2.0;  ///< rms per pixel, in detected photons
+    double glare = 0.0;                     ///< share of the light that is spread over the picture, [0, 1)
+    double glare_sigma_mm = 60.0;           ///< how far
+    double pincushion = 0.0;   ///< a place at the picture's edge is shown farther out by this share of the radius
+    bool round_field = false;  ///< black outside the largest circle
+};
+
+/// "flat_panel" or "image_intensifier"; throws UserError for any other name.
+FrameDetector detector_preset(const std::string& name);
+
 /// Beam, detector and what is made of the signal.
 struct FrameExposure {
     double kvp = 80.0;                 ///< [40, 150]
     double copper_mm = 0.3;            ///< added filtration, [0, 1.5]
     double detector_kerma_ngy = 40.0;  ///< per frame, mean over the measuring field, > 0
     double open_field_kerma_ngy =
-        0.0;                          ///< > 0: kerma without a patient; then brightness follows the tube, not the field
-    double scatter_to_primary = 0.3;  ///< behind the grid, [0, 5]
-    double blur_sigma_mm = 0.18;      ///< of the scintillator's Gaussian point spread, at the detector
-    double focal_spot_mm = 0.6;       ///< blur (M - 1) * focal spot of what lies at the isocentre
-    double electronic_noise_photons = 2.0;  ///< rms per pixel, in detected photons
-    double recursion = 0.45;                ///< b of y = (1 - b) x + b y', [0, 0.95]
-    double edge_enhancement = 0.35;         ///< of the log image, small neighbourhood
-    double harmonisation = 0.7;             ///< share of the coarse log image that is taken off, [0, 1]
-    double window = 2.0;                    ///< width of the grey scale in units of ln(intensity)
-    double level = 0.58;                    ///< grey (0..1) of the measuring field's middle
-    double measuring_field = 0.5;           ///< side of the central square that holds the kerma, share of the picture
+        0.0;  ///< > 0: kerma without a patient; then brightness follows the tube, not the field
+    std::optional<double> scatter_to_primary;  ///< behind the grid, [0, 5]; unset: from the patient (scatter.h)
+    FrameDetector detector;
+    double focal_spot_mm = 0.6;      ///< blur (M - 1) * focal spot of what lies at the isocentre
+    double recursion = 0.45;         ///< b of y = (1 - b) x + b y', [0, 0.95]
+    double edge_enhancement = 0.35;  ///< of the log image, small neighbourhood
+    double harmonisation = 0.7;      ///< share of the coarse log image that is taken off, [0, 1]
+    double window = 2.0;             ///< width of the grey scale in units of ln(intensity)
+    double level = 0.58;             ///< grey (0..1) of the measuring field's middle
+    double measuring_field = 0.5;    ///< side of the central square that holds the kerma, share of the picture
 };
 
 /// A camera at the device's tip.

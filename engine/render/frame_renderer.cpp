@@ -82,6 +82,12 @@ const ImageF& FrameRenderer::intensity() const {
 const ImageF& FrameRenderer::detected() const {
     return impl_->fluoroscope.detected();
 }
+const std::vector<std::uint8_t>& FrameRenderer::fluoroscopy() const {
+    return impl_->fluoroscope.grey();
+}
+double FrameRenderer::wanted_photons() const {
+    return impl_->fluoroscope.wanted_photons();
+}
 void FrameRenderer::reset() {
     impl_->fluoroscope.reset();
 }

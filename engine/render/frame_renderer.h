@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/parallel.h"
 #include "imaging/image.h"
@@ -42,6 +44,10 @@ public:
     const ImageF& intensity() const;
     /// What the detector read in the last frame, detected photons a pixel, before recursion.
     const ImageF& detected() const;
+    /// The last fluoroscopy as it is shown, without the panels: grey, one byte a pixel, rows from the top.
+    const std::vector<std::uint8_t>& fluoroscopy() const;
+    /// Detected photons a pixel that the exposure of the last frame asks for in the measuring field.
+    double wanted_photons() const;
     /// Forgets the last frames (temporal filter, held image): the start of another run.
     void reset();
     std::string description() const;

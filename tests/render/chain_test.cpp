@@ -5,10 +5,13 @@
 #include <numeric>
 
 #include "beam/c_arm.h"
+#include "core/errors.h"
 #include "render/attenuation.h"
 #include "render/detector.h"
 #include "render/frame_renderer.h"
+#include "render/image_intensifier.h"
 #include "render/projection.h"
+#include "render/scatter.h"
 #include "scene.h"
 
 namespace cathlab {
@@ -193,9 +196,9 @@ TEST(Chain, TheNoiseIsThatOfTheKermaAndFallsWithItsRoot) {
         FrameDescription f = empty_room(51.2);  // pixels of 0.4 mm
         f.solids.push_back(solid("water", "air", box({-300, -100, -300}, {300, 100, 300})));
         f.exposure.detector_kerma_ngy = kerma;
-        f.exposure.blur_sigma_mm = 0;
+        f.exposure.detector.blur_sigma_mm = 0;
         f.exposure.focal_spot_mm = 0;
-        f.exposure.electronic_noise_photons = 0;
+        f.exposure.detector.electronic_noise_photons = 0;
         FrameRenderer& r = renderer();
         Image8 out;
         double sum = 0, squares = 0, n = 0;
@@ -218,9 +221,9 @@ TEST(Chain, TheNoiseIsThatOfTheKermaAndFallsWithItsRoot) {
 
 TEST(Chain, TheReadOutsNoiseAddsItsVariance) {
     FrameDescription f = empty_room(51.2);
-    f.exposure.blur_sigma_mm = 0;
+    f.exposure.detector.blur_sigma_mm = 0;
     f.exposure.focal_spot_mm = 0;
-    f.exposure.electronic_noise_photons = 9;
+    f.exposure.detector.electronic_noise_photons = 9;
     f.width = f.height = 256;
     FrameRenderer& r = renderer();
     Image8 out;
@@ -233,6 +236,73 @@ TEST(Chain, TheReadOutsNoiseAddsItsVariance) {
     }
     const double mean = sum / n;
     EXPECT_NEAR((squares / n - mean * mean) / (mean + 81), 1.0, 0.02);
+}
+
+TEST(Chain, ScatterFillsTheShadowsAndGrowsWithThePatient) {
+    const auto lead_shadow = [](double water_mm) {
+        FrameDescription f = empty_room(300);
+        f.exposure.scatter_to_primary.reset();
+        f.solids.push_back(solid("water", "air", box({-300, -water_mm / 2, -300}, {300, water_mm / 2, 300})));
+        f.solids.push_back(solid("tungsten", "water", box({-3, -10, -3}, {3, 10, 3})));
+        FrameRenderer& r = renderer();
+        Image8 out;
+        r.render(f, out);
+        return r.intensity().at(64, 64) / (r.intensity().at(90, 64) - r.intensity().at(64, 64));  // scatter / primary
+    };
+    // The beam is 200 mm wide at the isocentre (SID 1200, M taken as 1.45: 207 mm).
+    EXPECT_NEAR(lead_shadow(200) / scatter_to_primary(200, 300 / 1.45), 1.0, 0.05);
+    EXPECT_NEAR(lead_shadow(100) / lead_shadow(200), 0.5, 0.03);
+    EXPECT_NEAR(scatter_to_primary(200, 300), 0.366, 0.001);
+}
+
+TEST(Chain, TheFocalSpotBlursByItsMagnification) {
+    // The edge of a thin plate at the isocentre: its shadow widens by (M - 1) times the spot.
+    const auto spread = [](double spot_mm, double isocentre_mm) {
+        FrameDescription f = empty_room(25.6);
+        f.width = f.height = 256;
+        f.exposure.focal_spot_mm = spot_mm;
+        f.exposure.detector.blur_sigma_mm = 0;
+        f.exposure.detector.electronic_noise_photons = 0;
+        f.exposure.detector_kerma_ngy = 1e9;
+        f.view.source_isocentre_mm = isocentre_mm;
+        f.solids.push_back(solid("copper", "air", box({-100, -0.5, -100}, {0, 0.5, 100})));
+        FrameRenderer& r = renderer();
+        Image8 out;
+        r.render(f, out);
+        double sum = 0, first = 0, second = 0;  // moments of the edge's derivative
+        for (int x = 96; x < 160; ++x) {
+            double line = 0;
+            for (int y = 100; y < 156; ++y) line += r.detected().at(x + 1, y) - r.detected().at(x, y);
+            sum += line;
+            first += line * x;
+            second += line * x * x;
+        }
+        return std::sqrt(std::max(0.0, second / sum - first * first / (sum * sum))) * 0.1;  // mm
+    };
+    const double sharp = spread(0.0, 800);
+    const double blurred = std::sqrt(std::pow(spread(1.0, 800), 2) - sharp * sharp);
+    EXPECT_NEAR(blurred, 0.5 / std::sqrt(12.0), 0.01);  // a box of (M - 1) * 1 mm, M = 1200 / 800
+    EXPECT_NEAR(std::sqrt(std::pow(spread(1.0, 600), 2) - sharp * sharp), 1.0 / std::sqrt(12.0), 0.02);
+}
+
+TEST(Chain, AnImageIntensifierVeilsBendsAndIsRound) {
+    const FrameDetector panel = detector_preset("flat_panel"), tube = detector_preset("image_intensifier");
+    EXPECT_THROW(detector_preset("image_intensifer"), UserError);
+    ImageF image(200, 200, 100.0F);
+    ImageF flat = image;
+    distort(flat, panel, 0.5, Workers());
+    EXPECT_EQ(flat.values, image.values);
+    for (int y = 90; y < 110; ++y) {
+        for (int x = 90; x < 110; ++x) image.values[image.offset(x, y)] = 0.0F;  // a lead square
+    }
+    distort(image, tube, 0.5, Workers());
+    EXPECT_NEAR(image.at(100, 100), 100 * tube.glare, 1.0);  // almost the whole picture's light
+    EXPECT_EQ(image.at(3, 3), 0.0F);
+    EXPECT_GT(image.at(100, 3), 90.0F);
+    const Pincushion bent(tube.pincushion, 200, 200);
+    const Vec2 place(170, 60);
+    EXPECT_NEAR((bent.pinhole(bent.shown(place)) - place).norm(), 0.0, 1e-6);
+    EXPECT_NEAR(bent.shown(Vec2(200, 100)).x(), 204.0, 1e-9);
 }
 
 // Modulation transfer by a slanted edge [iec62220-1]: the edge's profile over the distance from it, differentiated and
