@@ -129,32 +129,46 @@ void describe_camera(const Parts& parts, FrameDescription& frame) {
     frame.inner_camera = camera;
 }
 
-void describe_beam(const World& world, const SceneSpec& scene, const Channels& channels, FrameDescription& frame) {
+void describe_beam(const World& world, const SceneSpec& scene, const Channels& channels, const ViewChange& change,
+                   FrameDescription& frame) {
     BeamSpec fallback;
     fallback.c_arm.sid_mm = scene.c_arm.sid_mm;
     fallback.c_arm.sod_mm = scene.c_arm.sod_mm;
     fallback.c_arm.field_mm = scene.c_arm.field_of_view_mm;
     fallback.isocentre = scene.c_arm.isocentre.point;
     const auto* in_world = world.first<BeamSpec>();
-    const BeamSpec& beam = in_world != nullptr ? *in_world : fallback;
-    const Vec3 isocentre = isocentre_in_patient(beam, channels.table_longitudinal_mm, channels.table_lateral_mm);
-    const CArmPose pose = c_arm_pose(beam.c_arm, isocentre, channels.primary_angle_deg, channels.secondary_angle_deg);
+    BeamSpec beam = in_world != nullptr ? *in_world : fallback;
+    beam.c_arm.sid_mm = change.sid_mm.value_or(beam.c_arm.sid_mm);
+    beam.c_arm.sod_mm = change.sod_mm.value_or(beam.c_arm.sod_mm);
+    beam.c_arm.field_mm = change.field_mm.value_or(beam.c_arm.field_mm);
+    validate(beam.c_arm);
+    Vec3 isocentre = isocentre_in_patient(beam, channels.table_longitudinal_mm, channels.table_lateral_mm);
+    if (change.isocentre.size() == 3) isocentre = Vec3(change.isocentre[0], change.isocentre[1], change.isocentre[2]);
+    const CArmPose pose = c_arm_pose(beam.c_arm, isocentre, change.primary_deg.value_or(channels.primary_angle_deg),
+                                     change.secondary_deg.value_or(channels.secondary_angle_deg));
     frame.view.source = pose.source;
     frame.view.detector_center = pose.detector;
     frame.view.right = pose.right;
     frame.view.down = pose.down;
     frame.view.width_mm = beam.c_arm.field_mm;
     frame.view.height_mm = beam.c_arm.field_mm;
+    frame.view.source_isocentre_mm = beam.c_arm.sod_mm;
+    frame.exposure.detector = detector_preset(change.detector.empty() ? scene.c_arm.detector : change.detector);
     frame.exposure.copper_mm = beam.copper_mm;
     if (channels.tube_voltage_kvp > 0.0) frame.exposure.kvp = channels.tube_voltage_kvp;
-    if (channels.detector_kerma_ngy > 0.0) frame.exposure.detector_kerma_ngy = channels.detector_kerma_ngy;
-    frame.beam_on = channels.beam_on > 0.5;
+    if (change.kvp) frame.exposure.kvp = *change.kvp;
+    // Another view has another thickness, for which the control would have reached its target.
+    frame.exposure.detector_kerma_ngy = beam.target_kerma_ngy;
+    if (channels.detector_kerma_ngy > 0.0 && !change.moves())
+        frame.exposure.detector_kerma_ngy = channels.detector_kerma_ngy;
+    if (change.kerma_ngy) frame.exposure.detector_kerma_ngy = *change.kerma_ngy;
+    frame.beam_on = change.beam_on || channels.beam_on > 0.5;
 }
 
 }  // namespace
 
-void describe_frame(World& world, const SceneSpec& scene, const Channels& channels, FrameMemory& memory,
-                    FrameDescription& frame) {
+void describe_frame(World& world, const SceneSpec& scene, const Channels& channels, const ViewChange& change,
+                    FrameMemory& memory, FrameDescription& frame) {
     const Parts parts = find_parts(world);
     describe_solids(*parts.anatomy, frame);
     describe_lumen(parts, memory, frame.lumen);
@@ -162,8 +176,8 @@ void describe_frame(World& world, const SceneSpec& scene, const Channels& channe
     if (parts.catheter) frame.devices.push_back(describe_catheter(*parts.catheter, parts.catheter_route->shape));
     if (parts.wire) frame.devices.push_back(describe_wire(*parts.wire));
     describe_camera(parts, frame);
-    frame.show_inner_view = frame.inner_camera.has_value();
-    describe_beam(world, scene, channels, frame);
+    frame.show_inner_view = frame.inner_camera.has_value() && !change.alone;
+    describe_beam(world, scene, channels, change, frame);
     frame.wall_force_limit_n = channels.force_limit_n > 0.0 ? channels.force_limit_n : 0.8;
 }
 

@@ -6,6 +6,7 @@
 #include "core/channels.h"
 #include "render/frame_description.h"
 #include "scene/scene_spec.h"
+#include "view_change.h"
 #include "world/world.h"
 
 namespace cathlab {
@@ -17,7 +18,8 @@ struct FrameMemory {
 
 /// Fills everything but size, seed, frame_index and overlay.  Give the same objects for every frame of a run: meshes
 /// are copied once and the camera turns with the device's tip from where it looked last.
-void describe_frame(World& world, const SceneSpec& scene, const Channels& channels, FrameMemory& memory,
-                    FrameDescription& frame);
+/// `change`: what the view is to be instead of the run's own.  Throws UserError where that geometry cannot be.
+void describe_frame(World& world, const SceneSpec& scene, const Channels& channels, const ViewChange& change,
+                    FrameMemory& memory, FrameDescription& frame);
 
 }  // namespace cathlab

@@ -8,6 +8,7 @@
 #include "film_queue.h"
 #include "hud/hud.h"
 #include "hud_fill.h"
+#include "label_recorder.h"
 #include "render/frame_renderer.h"
 
 namespace cathlab {
@@ -16,6 +17,17 @@ namespace {
 constexpr std::size_t message_lines = 4;
 constexpr double message_s = 4.0;
 constexpr std::size_t queue_slots = 4;  // pictures that a slow moment of the film may lag behind
+
+DicomFrame machine_of(const Channels& channels, const ViewChange& view) {
+    DicomFrame out;
+    out.primary_deg = view.primary_deg.value_or(channels.primary_angle_deg);
+    out.secondary_deg = view.secondary_deg.value_or(channels.secondary_angle_deg);
+    out.kvp = view.kvp.value_or(channels.tube_voltage_kvp);
+    out.dose_area_gycm2 = channels.dose_area_product_gycm2;
+    out.air_kerma_mgy = channels.air_kerma_mgy;
+    out.beam_time_s = channels.beam_time_s;
+    return out;
+}
 
 }  // namespace
 
@@ -33,6 +45,10 @@ struct Film::Impl {
           queue(the_options, threads, queue_slots) {}
 
     void lay_out(FrameDescription& frame, const Channels& channels) {
+        if (options.view.alone) {
+            frame.overlay = {};
+            return;
+        }
         fill_hud(scene, channels, panels);
         while (!messages.empty() && messages.front().time_s < channels.time_s - message_s) messages.pop_front();
         panels.messages.clear();
@@ -53,6 +69,7 @@ struct Film::Impl {
     FrameMemory memory;
     HudData panels;
     std::deque<Event> messages;
+    std::unique_ptr<LabelRecorder> labels;
     std::size_t count = 0;
 };
 
@@ -62,22 +79,29 @@ Film::Film(const SceneSpec& scene, const FilmOptions& options, int threads)
 Film::~Film() = default;
 
 bool Film::due(double time_s) const {
-    return time_s * impl_->options.fps + 1e-9 >= static_cast<double>(impl_->count);
+    const double since_s = time_s - impl_->options.view.from_s;
+    return since_s * impl_->options.fps + 1e-9 >= static_cast<double>(impl_->count);
 }
 
 void Film::add(World& world, const Channels& channels) {
     Impl& m = *impl_;
-    FrameDescription& frame = m.queue.next();
+    FilmFrame& film_frame = m.queue.next();
+    FrameDescription& frame = film_frame.picture;
     if (m.options.probe) m.options.probe("describe");
     frame.width = m.options.width;
     frame.height = m.options.height;
     frame.seed = m.scene.seed;
     frame.frame_index = m.count;
     frame.inner_camera = m.camera;
-    describe_frame(world, m.scene, channels, m.memory, frame);
+    describe_frame(world, m.scene, channels, m.options.view, m.memory, frame);
+    film_frame.machine = machine_of(channels, m.options.view);
     m.camera = frame.inner_camera;
     if (m.options.probe) m.options.probe("panels");
     m.lay_out(frame, channels);
+    if (!m.options.labels.empty()) {
+        if (!m.labels) m.labels = std::make_unique<LabelRecorder>(m.options.labels, m.options.path, world);
+        m.labels->add(world, m.scene, channels, frame);
+    }
     ++m.count;
     m.queue.submit();
 }
@@ -111,6 +135,8 @@ bool Film::failed() const {
 
 void Film::close() {
     impl_->queue.close();
+    if (impl_->labels) impl_->labels->close();
+    impl_->labels.reset();
 }
 
 }  // namespace cathlab

@@ -46,7 +46,7 @@ void FilmQueue::wait(std::unique_lock<std::mutex>& lock, const std::function<boo
     if (failure_) std::rethrow_exception(failure_);
 }
 
-FrameDescription& FilmQueue::next() {
+FilmFrame& FilmQueue::next() {
     std::unique_lock lock(mutex_);
     wait(lock, [&] { return submitted_ - drawn_ < slots_.size(); });
     return slots_[submitted_ % slots_.size()];

@@ -28,7 +28,7 @@ public:
     FilmQueue& operator=(const FilmQueue&) = delete;
 
     /// A free description to fill; waits for one.  It holds what an earlier frame left in it.
-    FrameDescription& next();
+    FilmFrame& next();
     /// The description that next() gave is filled.
     void submit();
     /// The picture of the last submit() becomes the poster.
@@ -46,7 +46,7 @@ private:
     void wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& ready);
     void stop();
 
-    std::vector<FrameDescription> slots_;
+    std::vector<FilmFrame> slots_;
     std::unique_ptr<Studio> studio_;
 
     mutable std::mutex mutex_;

@@ -1,8 +1,11 @@
 // cathlab replay: a run again from step 0 with its recorded inputs, compared with what was recorded.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "commands.h"
+#include "core/errors.h"
 #include "core/log.h"
 #include "film.h"
 #include "progress.h"
@@ -19,6 +22,9 @@ struct ReplayOptions {
     bool verify = false;
     int threads = default_threads();
     FilmArguments film;
+    std::string out;    // folder of what is made of the pictures
+    std::string still;  // "" or a file: the last picture
+    double to_s = 0.0;  // 0: to the run's end
 };
 
 SceneSpec recorded_scene(const RunRecord& run, const AppContext& context) {
@@ -79,23 +85,32 @@ private:
     std::string channel_, difference_;
 };
 
+bool pictured(const ReplayOptions& options) {
+    const FilmArguments& film = options.film;
+    return (!film.video.empty() && film.video != "none") || !film.labels.empty() || !film.dicom.empty() ||
+           !film.frames.empty() || !options.still.empty();
+}
+
 void replay(const ReplayOptions& options, AppContext& context) {
     const RunRecord run = read_run(options.folder);
     const SceneSpec scene = recorded_scene(run, context);
     std::optional<Verifier> verifier;
     if (options.verify) verifier.emplace(run);
-    const bool filmed = !options.film.video.empty() && options.film.video != "none";
-    const ThreadShares threads = share_threads(options.threads, filmed);
+    const ThreadShares threads = share_threads(options.threads, pictured(options));
     Session session(scene, run.manifest.seed, threads.step, context);
     if (session.anatomy_hash() != run.manifest.anatomy_hash)
         throw UserError(options.folder + ": the anatomy is built otherwise than when this run was recorded");
     std::unique_ptr<Film> film;
-    if (filmed)
-        film = std::make_unique<Film>(scene, film_options(options.film, scene, options.film.video), threads.film);
+    if (pictured(options)) {
+        const std::string video = options.film.video == "none" ? "" : options.film.video;
+        film = std::make_unique<Film>(scene, film_options(options.film, scene, video, options.out), threads.film);
+    }
     Progress progress("replaying");
     std::int64_t k = 0;
+    const std::int64_t end =
+        options.to_s > 0.0 ? std::min<std::int64_t>(run.steps, std::llround(options.to_s / session.dt())) : run.steps;
     bool agrees = true;
-    for (; k < run.steps && agrees && !stop_wanted(); ++k) {
+    for (; k < end && agrees && !stop_wanted(); ++k) {
         agrees = !verifier || verifier->state(k, session.world());
         if (!agrees) break;
         session.step(run.input_at(k));
@@ -104,13 +119,16 @@ void replay(const ReplayOptions& options, AppContext& context) {
             for (const Event& event : session.events()) film->message(event);
             while (film->due(session.channels().time_s)) film->add(session.world(), session.channels());
         }
-        progress.update(static_cast<double>(k + 1) / static_cast<double>(run.steps));
+        progress.update(static_cast<double>(k + 1) / static_cast<double>(end));
     }
     progress.end();
-    if (film) film->close();
+    if (film) {
+        if (!options.still.empty() && film->frames() > 0) write_png(options.still, film->poster());
+        film->close();
+    }
     if (agrees && verifier) agrees = verifier->state(k, session.world());
     if (!agrees) throw UserError(options.folder + ": " + verifier->difference());
-    if (k < run.steps) throw UserError("stopped after step " + std::to_string(k) + " of " + std::to_string(run.steps));
+    if (k < end) throw UserError("stopped after step " + std::to_string(k) + " of " + std::to_string(end));
     if (verifier && !verifier->channels_agree())
         throw UserError(options.folder + ": " + verifier->channel_difference());
     std::printf("%s: %lld steps replayed", options.folder.c_str(), static_cast<long long>(k));
@@ -125,14 +143,54 @@ void add_replay_command(CLI::App& app, AppContext& context) {
     CLI::App* command = app.add_subcommand("replay", "Do a recorded run again from step 0");
     command->add_option("DIR", options->folder, "a run folder")->required();
     command->add_flag("--verify", options->verify, "compare every recorded state hash and channel");
-    command->add_option("--video", options->film.video, "film it: .mp4 or .avi (lossless)");
-    command->add_option("--size", options->film.size, "of the film, WxH; else the scene's");
-    command->add_option("--fps", options->film.fps, "pictures a second of simulated time; else the scene's")
-        ->check(CLI::Range(1.0, 120.0));
+    add_film_options(*command, options->film, "film it: .mp4 or .avi (lossless)");
     command->add_option("--threads", options->threads, "in all; from 2 on one of them draws the film")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
-    command->callback([options, &context] { replay(*options, context); });
+    command->callback([options, &context] {
+        options->out = options->folder;
+        replay(*options, context);
+    });
+}
+
+void add_render_command(CLI::App& app, AppContext& context) {
+    const auto options = std::make_shared<ReplayOptions>();
+    CLI::App* command =
+        app.add_subcommand("render", "Make film, labels and other pictures of a recorded run again, from elsewhere");
+    command->add_option("DIR", options->folder, "a run folder")->required();
+    command->add_option("--out", options->out, "a folder for film and labels; else DIR/render");
+    add_film_options(*command, options->film, "the film: .mp4, .avi (lossless), or none; else fluoro.mp4 in --out");
+    ViewChange& view = options->film.view;
+    command->add_option("--primary", view.primary_deg, "deg, positive = LAO; else as in the run")
+        ->check(CLI::Range(-180.0, 180.0));
+    command->add_option("--secondary", view.secondary_deg, "deg, positive = cranial")->check(CLI::Range(-90.0, 90.0));
+    command->add_option("--sid", view.sid_mm, "mm, source to detector")->check(CLI::Range(600.0, 1500.0));
+    command->add_option("--sod", view.sod_mm, "mm, source to isocentre")->check(CLI::Range(400.0, 1200.0));
+    command->add_option("--field-of-view", view.field_mm, "mm, side of the detector's field")
+        ->check(CLI::Range(50.0, 500.0));
+    command->add_option("--isocentre", view.isocentre, "X Y Z in mm, in the patient")->expected(3);
+    command
+        ->add_option("--kerma", view.kerma_ngy, "nGy at the detector a picture: 20 low, 40 normal, 80 high, 170 cine")
+        ->check(CLI::Range(1.0, 10000.0));
+    command->add_option("--kvp", view.kvp, "kV, tube voltage")->check(CLI::Range(40.0, 150.0));
+    command->add_option("--detector", view.detector, "flat_panel or image_intensifier")
+        ->check(CLI::IsMember({"flat_panel", "image_intensifier"}));
+    command->add_flag("--beam-on", view.beam_on, "expose every picture, whether the pedal was down or not");
+    command->add_flag("--fluoroscopy-alone", view.alone, "without inner view and panels");
+    command->add_option("--from", view.from_s, "s, of the first picture")->check(CLI::Range(0.0, 86400.0));
+    command->add_option("--to", options->to_s, "s, where it ends; else with the run")->check(CLI::Range(0.02, 86400.0));
+    command->add_option("--still", options->still, "a PNG file: the last picture");
+    command->add_option("--threads", options->threads, "in all; from 2 on one of them draws the film")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    command->callback([options, &context] {
+        if (options->out.empty()) options->out = options->folder + "/render";
+        std::error_code error;
+        std::filesystem::create_directories(options->out, error);
+        if (error) throw UserError("cannot make the folder '" + options->out + "': " + error.message());
+        if (options->film.video.empty() && options->still.empty()) options->film.video = options->out + "/fluoro.mp4";
+        replay(*options, context);
+    });
 }
 
 }  // namespace cathlab

@@ -101,10 +101,11 @@ private:
     // The film comes before the logs: where it cannot be made, no half run is left behind.
     std::unique_ptr<Film> open_film(const RunOptions& options, const Session& session) {
         prepare_run_folder(folder_, options.force);
-        if (options.film.video == "none") return nullptr;
+        if (!filmed(options.film)) return nullptr;
         video_ = options.film.video.empty() ? folder_ + "/fluoro.mp4" : options.film.video;
+        if (video_ == "none") video_.clear();
         try {
-            return std::make_unique<Film>(session.scene(), film_options(options.film, session.scene(), video_),
+            return std::make_unique<Film>(session.scene(), film_options(options.film, session.scene(), video_, folder_),
                                           share_threads(options.threads, true).film);
         } catch (...) {
             std::error_code not_empty;
@@ -201,10 +202,10 @@ void run(RunOptions options, AppContext& context) {
         load_scene(find_scene(options.scene, context.data_root), options.overlays, context.data_root);
     if (options.script.empty()) options.script = scene.script;
     const Script script = options.script.empty() ? Script() : Script::load(options.script);
-    film_options(options.film, scene, "");  // a wrong size is told before the world is built
+    film_options(options.film, scene, "", "");  // a wrong size is told before the world is built
     check_run_folder(options.out, options.force);
-    const bool filmed = options.film.video != "none";
-    Session session(scene, options.seed.value_or(scene.seed), share_threads(options.threads, filmed).step, context);
+    Session session(scene, options.seed.value_or(scene.seed), share_threads(options.threads, filmed(options.film)).step,
+                    context);
     Recording recording(options, session, script, context);
     const bool complete = recording.run();
     const double simulated = recording.simulated_s();
@@ -234,11 +235,8 @@ void add_run_command(CLI::App& app, AppContext& context) {
     command->add_option("--threads", options->threads, "in all; from 2 on one of them draws the film")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
-    command->add_option("--video", options->film.video,
-                        "the film: .mp4, .avi (lossless), or none; else fluoro.mp4 in the folder");
-    command->add_option("--size", options->film.size, "of the film, WxH; else the scene's");
-    command->add_option("--fps", options->film.fps, "pictures a second of simulated time; else the scene's")
-        ->check(CLI::Range(1.0, 120.0));
+    add_film_options(*command, options->film,
+                     "the film: .mp4, .avi (lossless), or none; else fluoro.mp4 in the folder");
     command->add_option("--overlay", options->overlays, "a file laid over the scene; may be given again")
         ->allow_extra_args(false);
     command->add_flag("--force", options->force, "replace an earlier run in the folder");

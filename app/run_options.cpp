@@ -1,5 +1,6 @@
 #include "run_options.h"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 
 #include "core/csv.h"
@@ -11,7 +12,31 @@ void require_finite(const char* option, double value) {
     if (!std::isfinite(value)) throw UserError(std::string(option) + ": a finite number is wanted", true);
 }
 
-FilmOptions film_options(const FilmArguments& arguments, const SceneSpec& scene, const std::string& path) {
+bool filmed(const FilmArguments& arguments) {
+    return arguments.video != "none" || !arguments.labels.empty() || !arguments.dicom.empty() ||
+           !arguments.frames.empty();
+}
+
+void add_film_options(CLI::App& command, FilmArguments& arguments, const std::string& video_text) {
+    command.add_option("--video", arguments.video, video_text);
+    command.add_option("--size", arguments.size, "of the film, WxH; else the scene's");
+    command.add_option("--fps", arguments.fps, "pictures a second of simulated time; else the scene's")
+        ->check(CLI::Range(1.0, 120.0));
+    command
+        .add_option("--labels", arguments.labels, "coco: labels.json with masks, key points and camera of each picture")
+        ->check(CLI::IsMember({"coco"}));
+    command.add_option("--dicom", arguments.dicom, "the fluoroscopy as a DICOM file (X-ray angiography, multi-frame)");
+    command.add_option("--frames", arguments.frames,
+                       "a folder for what the detector read in each picture, before its display");
+    command
+        .add_option("--frame-format", arguments.frame_format,
+                    "of --frames: png (16 bits, 4096 = what the exposure aims at) or float (raw photons)")
+        ->check(CLI::IsMember({"png", "float"}))
+        ->capture_default_str();
+}
+
+FilmOptions film_options(const FilmArguments& arguments, const SceneSpec& scene, const std::string& path,
+                         const std::string& folder) {
     FilmOptions out{path, scene.video.width, scene.video.height, scene.video.fps};
     if (!arguments.size.empty()) {
         const std::string_view size(arguments.size);
@@ -27,6 +52,20 @@ FilmOptions film_options(const FilmArguments& arguments, const SceneSpec& scene,
     }
     require_finite("--fps", arguments.fps);
     if (arguments.fps > 0.0) out.fps = arguments.fps;
+    if (!arguments.labels.empty()) out.labels = folder + "/labels.json";
+    out.dicom = arguments.dicom;
+    out.frames = arguments.frames;
+    out.frames_as_float = arguments.frame_format == "float";
+    out.view = arguments.view;
+    const ViewChange& view = arguments.view;
+    DicomFacts& facts = out.dicom_facts;
+    facts.description = scene.title.empty() ? scene.name : scene.title;
+    facts.software = "cathlab " CATHLAB_VERSION;
+    facts.frames_per_s = out.fps;
+    facts.sid_mm = view.sid_mm.value_or(scene.c_arm.sid_mm);
+    facts.sod_mm = view.sod_mm.value_or(scene.c_arm.sod_mm);
+    facts.round_field = (view.detector.empty() ? scene.c_arm.detector : view.detector) == "image_intensifier";
+    facts.identity = scene.hash ^ scene.seed;
     return out;
 }
 

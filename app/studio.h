@@ -7,8 +7,10 @@
 #include <string>
 #include <string_view>
 
+#include "imaging/dicom_writer.h"
 #include "imaging/image.h"
 #include "render/frame_description.h"
+#include "view_change.h"
 
 namespace cathlab {
 
@@ -18,6 +20,18 @@ struct FilmOptions {
     int height = 512;
     double fps = 15.0;
     std::function<void(std::string_view part)> probe = {};  ///< called as each part of a picture begins, "" as it ends
+    std::string labels = {};                                ///< a COCO file, "" = none
+    std::string dicom = {};                                 ///< a DICOM file of the fluoroscopy, "" = none
+    DicomFacts dicom_facts = {};
+    std::string frames = {};       ///< a folder for what the detector read in each picture, "" = none
+    bool frames_as_float = false;  ///< raw floats instead of 16-bit PNG
+    ViewChange view = {};
+};
+
+/// What a picture is drawn from, and what the machine said when it was taken.
+struct FilmFrame {
+    FrameDescription picture;
+    DicomFrame machine;
 };
 
 /// One description after another -> pictures -> the film.  Make it, use it and let it go on one thread: a GL context
@@ -31,7 +45,7 @@ public:
     Studio& operator=(const Studio&) = delete;
 
     /// Draws and appends a picture.  Throws UserError where the encoder stopped, at this picture or the one before.
-    void add(const FrameDescription& frame);
+    void add(const FilmFrame& frame);
     /// The last picture; empty before the first.
     const Image8& last() const;
     /// Closes the film; it then holds all pictures so far (none: nothing is written).  Throws UserError.

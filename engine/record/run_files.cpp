@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uint64_t most_log_bytes = 4ULL << 30U;
-constexpr std::array run_file_names{"manifest.json", "inputs.jsonl", "trace.csv",  "events.jsonl", "hashes.csv",
-                                    "metrics.json",  "poster.png",   "fluoro.mp4", "fluoro.avi",   "report.html"};
+constexpr std::array run_file_names{"manifest.json", "inputs.jsonl", "trace.csv",  "events.jsonl",
+                                    "hashes.csv",    "metrics.json", "poster.png", "fluoro.mp4",
+                                    "fluoro.avi",    "labels.json",  "report.html"};
 
 std::string reason() {
     return std::strerror(errno);

@@ -91,6 +91,7 @@ struct SceneCArm {
     double field_of_view_mm = 320.0;                ///< side of the square detector field
     NameOrPoint isocentre{"centre", Vec3::Zero()};  ///< a landmark, "centre" (middle of the lumen's box), or a point
     double frame_rate = 15.0;
+    std::string detector = "flat_panel";  ///< or "image_intensifier": of the pictures alone
     SourcePlace where;
 };
 

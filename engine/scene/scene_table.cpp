@@ -123,6 +123,8 @@ Table<SceneCArm> c_arm_table() {
         .name_or_point("isocentre", &SceneCArm::isocentre, world_mm,
                        "a landmark, 'centre' for the middle of the lumen's box, or a point")
         .number("frame_rate", &SceneCArm::frame_rate, "1/s", {1, 30}, "7.5, 15 or 30 frames a second")
+        .choice("detector", &SceneCArm::detector, {"flat_panel", "image_intensifier"},
+                "what makes the picture: no part of the state")
         .place(&SceneCArm::where);
 }
 
