@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/errors.h"
+#include "optimise/least_squares.h"
 #include "optimise/local.h"
 
 namespace cathlab {
@@ -124,6 +125,36 @@ std::string whole_overlay(const SceneSpec& scene, std::vector<std::string> paths
     return text;
 }
 
+/// An elastic wall's strain is a smooth function of its numbers, whose valleys are long and narrow: least squares go
+/// along them where a simplex does not.  Differences are taken far enough apart not to see how exactly the rig comes to
+/// rest.
+Result polish_by_squares(const StressStrain& reference, const WallSearch& search, const Problem& problem,
+                         const std::function<SceneSpec(std::span<const double>)>& scene_at,
+                         const std::function<bool()>& go_on) {
+    LeastSquaresProblem squares;
+    squares.bounds = problem.bounds;
+    squares.start = problem.start;
+    squares.residuals = gauge_names(search.rig).size() * reference.strain.size();
+    squares.residual = [&](std::span<const double> x, std::span<double> residual) {
+        if (!go_on()) return false;
+        try {
+            const std::vector<double> miss =
+                misses(strain_at_rows(reference, search.rig, scene_at(x), search.stop), reference);
+            std::copy(miss.begin(), miss.end(), residual.begin());
+            return std::all_of(miss.begin(), miss.end(), [](double m) { return std::isfinite(m); });
+        } catch (const UserError&) {
+            return false;
+        }
+    };
+    LeastSquaresOptions options;
+    options.max_iterations = std::max(1, search.polish_evaluations / (1 + static_cast<int>(problem.bounds.size())));
+    options.step = 0.02;
+    options.value_tolerance = 1e-3;
+    Result found = minimise_squares(squares, options);
+    found.value = std::sqrt(2.0 * found.value / static_cast<double>(squares.residuals));
+    return found;
+}
+
 }  // namespace
 
 std::vector<Bound> default_wall_bounds(const SceneSpec& scene, RigStress stress) {
@@ -214,17 +245,25 @@ WallCalibration calibrate_wall(const StressStrain& reference, const WallSearch& 
     }
     if (search.polish_evaluations > 0 && !best.stopped) {
         problem.start = best.best;
-        LocalOptions local;
-        local.max_evaluations = search.polish_evaluations;
-        local.first_step = 0.05;
-        local.x_tolerance = 1e-5;
-        local.method = LocalMethod::sbplx;
-        local.on_evaluation = [&](const SearchProgress& progress) {
-            if (search.polish) search.polish(progress.evaluations);
+        int told = 0;
+        const auto tell = [&](int done) {
+            if (search.polish) search.polish(done);
             out.stopped = search.stop && search.stop();
             return !out.stopped;
         };
-        const Result polished = minimise_local(problem, local);
+        Result polished;
+        if (search.scene.wall.form == "elastic") {
+            const auto one_more = [&] { return tell(++told); };
+            polished = polish_by_squares(reference, search, problem, scene_at, one_more);
+        } else {
+            LocalOptions local;
+            local.max_evaluations = search.polish_evaluations;
+            local.first_step = 0.05;
+            local.x_tolerance = 1e-5;
+            local.method = LocalMethod::sbplx;
+            local.on_evaluation = [&](const SearchProgress& progress) { return tell(progress.evaluations); };
+            polished = minimise_local(problem, local);
+        }
         out.evaluations += polished.evaluations;
         if (polished.value < best.value) best = polished;
     }
