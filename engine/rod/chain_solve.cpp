@@ -24,6 +24,12 @@ namespace {
 
 constexpr double brake_tolerance = 1.25;  // of max_travel_mm
 constexpr int braking_passes = 12;
+// A Newton step in which a link swings by more is followed by another one at once: the ends of a link that is turned
+// move along an arc and not along the tangent, which would open its joints.
+constexpr double linear_swing_rad = 0.15;
+constexpr double most_swing_rad = 0.2;
+constexpr int newton_steps = 8;
+constexpr double first_guess = 0.1;  // of a joint's stiffness, for the brake of a swing
 
 Mat3 hat(const Vec3& v) {
     Mat3 m;
@@ -121,15 +127,25 @@ void Rod::Impl::assemble(double h) {
 }
 
 // A link that would travel further than max_travel_mm is braked by a viscous force of its own, so that contact, which
-// looks ahead by that much, is never jumped over when a stored bend is let go.  The brake only takes energy.
+// looks ahead by that much, is never jumped over when a stored bend is let go.  One that would swing by more than
+// max_turn_rad is braked likewise: a joint's linear law holds for small turns, and a shaped tip that snaps round in one
+// step would tear its joints open.  The brakes only take energy.
 std::size_t Rod::Impl::update_brakes(double h) {
     const std::size_t free = free_count();
     std::size_t first = free;
     for (std::size_t i = 0; i < free; ++i) {
         const double travel = (x[i] + system.solution[i].head<3>() - x_start[i]).norm();
-        if (travel <= brake_tolerance * max_travel_mm()) continue;
-        const double needed = links[i].mass / (h * h) * (travel / max_travel_mm() - 1.0);
-        brake[i] = std::max(3.0 * brake[i], needed);
+        const Vec3 turned = system.solution[i].tail<3>();
+        const double swing = (turned - axis[i] * axis[i].dot(turned)).norm();
+        if (travel <= brake_tolerance * max_travel_mm() && swing <= most_swing_rad) continue;
+        if (travel > brake_tolerance * max_travel_mm()) {
+            const double needed = links[i].mass / (h * h) * (travel / max_travel_mm() - 1.0);
+            brake[i] = std::max(3.0 * brake[i], needed);
+        }
+        if (swing > most_swing_rad) {
+            const double stiffness = links[i].inertia_across / (h * h) + first_guess * world.joint(i).bend;
+            swing_brake[i] = std::max(3.0 * swing_brake[i], stiffness * (swing / linear_swing_rad - 1.0));
+        }
         if (first == free) first = i;
     }
     return first;
@@ -163,11 +179,9 @@ void Rod::Impl::apply_solution(double h) {
     }
 }
 
-void Rod::solve(double h, std::span<ChainRow> chain_rows) {
-    Impl& m = *impl_;
+void Rod::Impl::newton_step(double h, std::span<ChainRow> chain_rows) {
+    Impl& m = *this;
     const std::size_t free = m.free_count();
-    for (const ChainRow& row : chain_rows)
-        CATHLAB_CHECK(row.link >= 0 && static_cast<std::size_t>(row.link) < m.count(), "a chain row names no link");
     m.assemble(h);
     m.axis.resize(free);
     for (std::size_t i = 0; i < free; ++i) m.axis[i] = m.q[i] * Vec3::UnitZ();
@@ -175,6 +189,7 @@ void Rod::solve(double h, std::span<ChainRow> chain_rows) {
     m.diagonal = m.system.diagonal;
     m.right = m.system.right;
     m.brake.assign(free, 0.0);
+    m.swing_brake.assign(free, 0.0);
     std::size_t first = 0;
     for (int pass = 0; first < free || pass == 0; ++pass) {
         for (std::size_t i = first; i < free; ++i) {
@@ -185,6 +200,9 @@ void Rod::solve(double h, std::span<ChainRow> chain_rows) {
                 m.system.diagonal[i].topLeftCorner<3, 3>().diagonal().array() += m.brake[i];
                 m.system.right[i].head<3>() += m.brake[i] * (m.x_start[i] - m.x[i]);
             }
+            if (m.swing_brake[i] > 0.0) {
+                m.system.diagonal[i].bottomRightCorner<3, 3>().diagonal().array() += m.swing_brake[i];
+            }
         }
         m.system.factor_and_solve(first);
         first = m.rows.update(m.system.solution, pass);
@@ -192,6 +210,45 @@ void Rod::solve(double h, std::span<ChainRow> chain_rows) {
     }
     m.rows.end(chain_rows);
     m.apply_solution(h);
+}
+
+// Rows after a Newton step, as their owner would measure them: the point has moved with its link, the partner has given
+// way to the change of the forces.
+void Rod::Impl::carry_on(std::span<ChainRow> now, std::span<const ChainRow> before) const {
+    for (std::size_t r = 0; r < now.size(); ++r) {
+        const auto link = static_cast<std::size_t>(now[r].link);
+        Vec3 moved = Vec3::Zero();
+        if (link < system.solution.size()) {
+            const Vec3 arm = det::rotation_from_vector(system.solution[link].tail<3>()) * now[r].arm;
+            moved = system.solution[link].head<3>() + arm - now[r].arm;
+            now[r].arm = arm;
+        }
+        const Vec3& n = now[r].normal;
+        now[r].gap += n.dot(moved) + now[r].compliance * (now[r].multiplier - before[r].multiplier);
+        now[r].slip += moved - n * n.dot(moved) + now[r].compliance * (now[r].tangent_force - before[r].tangent_force);
+    }
+}
+
+void Rod::solve(double h, std::span<ChainRow> chain_rows) {
+    Impl& m = *impl_;
+    for (const ChainRow& row : chain_rows)
+        CATHLAB_CHECK(row.link >= 0 && static_cast<std::size_t>(row.link) < m.count(), "a chain row names no link");
+    std::vector<ChainRow> now(chain_rows.begin(), chain_rows.end()), before;
+    for (int step = 0; step < newton_steps; ++step) {
+        before = now;
+        m.newton_step(h, now);
+        double swing = 0.0;
+        for (std::size_t i = 0; i < m.system.size(); ++i) {
+            const Vec3& turned = m.system.solution[i].tail<3>();
+            swing = std::max(swing, (turned - m.axis[i] * m.axis[i].dot(turned)).squaredNorm());
+        }
+        if (swing < linear_swing_rad * linear_swing_rad) break;
+        m.carry_on(now, before);
+    }
+    for (std::size_t r = 0; r < now.size(); ++r) {
+        chain_rows[r].multiplier = now[r].multiplier;
+        chain_rows[r].tangent_force = now[r].tangent_force;
+    }
 }
 
 double Rod::max_stretch() const {

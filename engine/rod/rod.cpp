@@ -11,8 +11,6 @@
 namespace cathlab {
 namespace {
 
-constexpr double max_turn_rad = 0.5;  // of a link, or of the grip, in a substep
-
 bool finite(const Vec3& v) {
     return std::isfinite(v.squaredNorm());
 }

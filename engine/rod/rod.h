@@ -97,10 +97,11 @@ public:
 
     /// The catheter over the wire; without one: false, 0 and the wire's tip.
     bool has_sleeve() const;
-    std::size_t front_count() const;     ///< links 0 .. front_count() - 1 are wire that is ahead of the catheter
-    double sleeve_insertion_mm() const;  ///< of the catheter beyond the mouth, 0 to its length less its last link
-    double sleeve_rotation_rad() const;  ///< of its grip, since the start
-    Vec3 sleeve_tip() const;             ///< world
+    const SleeveSpec& sleeve_spec() const;  ///< throws std::logic_error without one
+    std::size_t front_count() const;        ///< links 0 .. front_count() - 1 are wire that is ahead of the catheter
+    double sleeve_insertion_mm() const;     ///< of the catheter beyond the mouth, 0 to its length less its last link
+    double sleeve_rotation_rad() const;     ///< of its grip, since the start
+    Vec3 sleeve_tip() const;                ///< world
     /// How the hands share sheath_reaction_mn() along the mouth's z: sheath_force_mn() is then the wire's hand, this
     /// the catheter's.  The wire's carries what the wire ahead of the catheter is pressed with, and what it takes to
     /// slide.

@@ -9,6 +9,8 @@
 
 namespace cathlab {
 
+inline constexpr double max_turn_rad = 0.5;  // of a link, or of a grip, in a substep
+
 /// The catheter over the wire, and how either stands in the other.
 struct SleeveState {
     SleeveSpec spec;
@@ -48,7 +50,8 @@ struct Rod::Impl {
     std::vector<Vec3> axis;      // of the free links
     std::vector<Mat6> diagonal;  // the blocks before rows and brakes
     std::vector<Vec6> right;
-    std::vector<double> brake;  // mN/mm against a link's travel, see update_brakes
+    std::vector<double> brake;        // mN/mm against a link's travel, see update_brakes
+    std::vector<double> swing_brake;  // mN mm per rad against its swing in a Newton step
 
     std::size_t count() const { return x.size(); }
     std::size_t free_count() const;
@@ -65,6 +68,8 @@ struct Rod::Impl {
     void assemble_joint(std::size_t i, std::size_t free);
     std::size_t update_brakes(double h);
     void apply_solution(double h);
+    void newton_step(double h, std::span<ChainRow> rows);
+    void carry_on(std::span<ChainRow> now, std::span<const ChainRow> before) const;
 
     // With a catheter (rod_sleeve.cpp).
     void slide(double wire_insertion, double sleeve_insertion, double sleeve_rotation);

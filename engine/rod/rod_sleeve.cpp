@@ -10,8 +10,7 @@
 namespace cathlab {
 namespace {
 
-constexpr double max_turn_rad = 0.5;  // of a grip in a substep
-constexpr double creep_mm_s = 0.5;    // slower sliding meets less friction than Coulomb's
+constexpr double creep_mm_s = 0.5;  // slower sliding meets less friction than Coulomb's
 
 Quat about_z(double angle) {
     return {det::cos(0.5 * angle), 0.0, 0.0, det::sin(0.5 * angle)};
@@ -199,6 +198,10 @@ double Rod::max_insertion_mm() const {
 }
 bool Rod::has_sleeve() const {
     return impl_->sleeve != nullptr;
+}
+const SleeveSpec& Rod::sleeve_spec() const {
+    CATHLAB_CHECK(impl_->sleeve, "there is no catheter over this wire");
+    return impl_->sleeve->spec;
 }
 std::size_t Rod::front_count() const {
     return impl_->front;

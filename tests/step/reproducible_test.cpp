@@ -17,9 +17,9 @@ struct ExpectedHash {
     std::uint64_t hash;
 };
 constexpr std::array<ExpectedHash, 3> expected_hashes{{
-    {"tube_wire", 0x9c0f4d3d579377fc},
+    {"tube_wire", 0x3f4bf21fd9126fa8},
     {"tube_catheter", 0x8ffc57ab9d789af5},
-    {"fork", 0x4a0ea5ed412ac43b},
+    {"fork", 0x8c0195111c82e0a0},
 }};
 
 constexpr int steps = 150;
