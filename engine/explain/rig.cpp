@@ -101,6 +101,12 @@ std::string Rig::why_not(const EffectInfo& effect) const {
 }
 
 std::unique_ptr<Rig> make_rig(const Dataset& data, const Split& split) {
+    // Every candidate runs through all rows hundreds of times.
+    constexpr std::size_t most_rows = 100000;
+    if (data.rows() > most_rows)
+        throw UserError(data.folder + ": has " + std::to_string(data.rows()) + " rows; at most " +
+                        std::to_string(most_rows) +
+                        " can be explained in reasonable time: leave out recordings, or rows at even distances");
     if (data.kind == "catheter-tip") return make_catheter_rig(data, split);
     if (data.kind == "tendon-tip") return make_tendon_rig(data, split);
     if (data.kind == "heart-motion") return make_heart_rig(data, split);

@@ -69,7 +69,8 @@ protected:
     unsigned hooks_ = 0;  ///< that this rig asks
 };
 
-/// Throws UserError for kinds without a rig, and for data that do not determine the base model.
+/// Throws UserError for kinds without a rig, for more than 100,000 rows, and for data that do not determine the base
+/// model.
 std::unique_ptr<Rig> make_rig(const Dataset& data, const Split& split);
 
 /// The rows that the fit sees (0) or that judge it (1): root mean square a measured column.  NaN without such a row.

@@ -21,7 +21,6 @@ constexpr double significant = 0.01;
 constexpr double not_apart = 0.05;      // above it two models explain alike
 constexpr double least_gain = 0.01;     // of the held-out error
 constexpr double floor_factor = 1.15;   // a residual this near to the noise is noise
-constexpr double nothing_more = 1.1;    // times the declared noise: what is left beside an effect is its own law
 constexpr std::size_t kept_models = 3;  // from round to round
 
 std::set<std::string_view> names_of(const FittedModel& model) {
@@ -165,7 +164,7 @@ private:
             if (accepted[k]->held_out_cost <= enough) next.push_back(std::move(accepted[k]->model));
         kept_ = std::move(next);
         const double left = rms_of(kept_[0].residual, split_, 1);
-        return !(left <= nothing_more * data_.sensor_noise);
+        return !(left <= floor_factor * data_.sensor_noise);  // explained
     }
 
     void fit_all(std::vector<Child>& children) {
