@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/errors.h"
+#include "scene/wall_parameters.h"
 #include "softbody/wall_sample.h"
 
 namespace cathlab {
@@ -45,33 +46,6 @@ std::vector<std::uint8_t> connected(const TriMesh& mesh, const std::vector<std::
             }
     }
     return reached;
-}
-
-/// What the scene says of regions, on top of what the anatomy does: as when a scene's own wall is built.
-std::vector<RegionWall> apply_scene(const SceneWall& scene, std::vector<Region>& regions) {
-    std::vector<std::string> names;
-    for (Region& region : regions) {
-        region.particle_spacing_mm = std::min(region.particle_spacing_mm, scene.particle_spacing_mm);
-        names.push_back(region.name);
-    }
-    std::vector<RegionWall> out;
-    for (const SceneWallRegion& own : scene.regions) {
-        const auto it = std::find(names.begin(), names.end(), own.name);
-        if (it == names.end())
-            throw UserError(own.where, "the anatomy has no region '" + own.name + "'; it has " + comma_list(names) +
-                                           did_you_mean(own.name, names));
-        Region& region = regions[static_cast<std::size_t>(it - names.begin())];
-        region.particle_spacing_mm = own.particle_spacing_mm.value_or(region.particle_spacing_mm);
-        region.wall_thickness_mm = own.wall_thickness_mm.value_or(region.wall_thickness_mm);
-        RegionWall& wall = out.emplace_back();
-        wall.region = static_cast<Index>(it - names.begin());
-        wall.cluster_spacing_mm = own.cluster_spacing_mm;
-        wall.cluster_radius_mm = own.cluster_radius_mm;
-        wall.cluster_stiffness = own.cluster_stiffness;
-        wall.young_kpa = own.young_kpa;
-        wall.poisson = own.poisson;
-    }
-    return out;
 }
 
 }  // namespace
@@ -138,7 +112,7 @@ void cut_piece(const AnatomyModel& anatomy, const SceneRig& rig, StationWall& wa
 Specimen station_specimen(const StationWall& wall, const SceneWall& scene, RigStress stress, std::uint64_t seed) {
     Specimen out;
     std::vector<Region> regions = wall.regions;
-    out.own = apply_scene(scene, regions);
+    out.own = apply_wall(scene, regions);
     std::vector<double> wanted, thickness;
     for (const Region& region : regions) thickness.push_back(region.wall_thickness_mm);
     for (const Index region : wall.region) wanted.push_back(regions[at(region)].particle_spacing_mm);

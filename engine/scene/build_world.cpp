@@ -53,39 +53,9 @@ AnatomyModel get_anatomy(const SceneSpec& spec, const BuildOptions& options, con
     return load_or_build(anatomy, options.cache_folder, workers, progress);
 }
 
-Index find_region(const AnatomyModel& anatomy, const SceneWallRegion& wanted) {
-    std::vector<std::string> names;
-    for (const Region& region : anatomy.regions) names.push_back(region.name);
-    const auto it = std::find(names.begin(), names.end(), wanted.name);
-    if (it == names.end())
-        throw UserError(wanted.where, "the anatomy has no region '" + wanted.name + "'; it has " + comma_list(names) +
-                                          did_you_mean(wanted.name, names));
-    return static_cast<Index>(it - names.begin());
-}
-
-void override_regions(const SceneSpec& spec, AnatomyModel& anatomy, WallParameters& parameters) {
-    // The scene's spacing is the aorta's; regions that ask for less keep asking for less.
-    for (Region& region : anatomy.regions)
-        region.particle_spacing_mm = std::min(region.particle_spacing_mm, spec.wall.particle_spacing_mm);
-    for (const SceneWallRegion& wanted : spec.wall.regions) {
-        const Index index = find_region(anatomy, wanted);
-        Region& region = anatomy.regions[static_cast<std::size_t>(index)];
-        if (wanted.particle_spacing_mm) region.particle_spacing_mm = *wanted.particle_spacing_mm;
-        if (wanted.wall_thickness_mm) region.wall_thickness_mm = *wanted.wall_thickness_mm;
-        if (wanted.force_limit_n) region.force_limit_n = *wanted.force_limit_n;
-        RegionWall& own = parameters.regions.emplace_back();
-        own.region = index;
-        own.cluster_spacing_mm = wanted.cluster_spacing_mm;
-        own.cluster_radius_mm = wanted.cluster_radius_mm;
-        own.cluster_stiffness = wanted.cluster_stiffness;
-        own.young_kpa = wanted.young_kpa;
-        own.poisson = wanted.poisson;
-    }
-}
-
 Shared<SoftBodyModel> build_wall(const SceneSpec& spec, AnatomyModel& anatomy) {
     WallParameters parameters = wall_parameters(spec.wall);
-    override_regions(spec, anatomy, parameters);
+    parameters.regions = apply_wall(spec.wall, anatomy.regions);
 
     std::vector<double> wanted;
     std::vector<double> thickness;

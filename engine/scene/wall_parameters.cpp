@@ -1,5 +1,9 @@
 #include "scene/wall_parameters.h"
 
+#include <algorithm>
+
+#include "core/errors.h"
+
 namespace cathlab {
 
 WallParameters wall_parameters(const SceneWall& wall) {
@@ -18,6 +22,33 @@ WallParameters wall_parameters(const SceneWall& wall) {
     out.max_speed_mm_s = wall.max_speed_mm_s;
     out.precision = wall.precision == "double" ? Precision::double_ : Precision::float_;
     out.reference_spacing_mm = wall.particle_spacing_mm;
+    return out;
+}
+
+std::vector<RegionWall> apply_wall(const SceneWall& wall, std::vector<Region>& regions) {
+    std::vector<std::string> names;
+    for (Region& region : regions) {
+        names.push_back(region.name);
+        region.particle_spacing_mm = std::min(region.particle_spacing_mm, wall.particle_spacing_mm);
+    }
+    std::vector<RegionWall> out;
+    for (const SceneWallRegion& wanted : wall.regions) {
+        const auto it = std::find(names.begin(), names.end(), wanted.name);
+        if (it == names.end())
+            throw UserError(wanted.where, "the anatomy has no region '" + wanted.name + "'; it has " +
+                                              comma_list(names) + did_you_mean(wanted.name, names));
+        Region& region = regions[static_cast<std::size_t>(it - names.begin())];
+        region.particle_spacing_mm = wanted.particle_spacing_mm.value_or(region.particle_spacing_mm);
+        region.wall_thickness_mm = wanted.wall_thickness_mm.value_or(region.wall_thickness_mm);
+        region.force_limit_n = wanted.force_limit_n.value_or(region.force_limit_n);
+        RegionWall& own = out.emplace_back();
+        own.region = static_cast<Index>(it - names.begin());
+        own.cluster_spacing_mm = wanted.cluster_spacing_mm;
+        own.cluster_radius_mm = wanted.cluster_radius_mm;
+        own.cluster_stiffness = wanted.cluster_stiffness;
+        own.young_kpa = wanted.young_kpa;
+        own.poisson = wanted.poisson;
+    }
     return out;
 }
 
