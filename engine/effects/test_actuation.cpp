@@ -26,7 +26,9 @@ EffectInfo test_actuation_effect() {
         .for_tests = true,
         .applies_to = {},
         .parameters = {{"gain", "1", 1.0, -2.0, 2.0, "strength"}},
-        .make = [](std::span<const double> p) -> std::unique_ptr<Effect> { return std::make_unique<TestActuation>(p[0]); },
+        .make = [](std::span<const double> p) -> std::unique_ptr<Effect> {
+            return std::make_unique<TestActuation>(p[0]);
+        },
     };
 }
 
