@@ -24,7 +24,12 @@ void check(const CheckOptions& options, const AppContext& context) {
         load_scene(find_scene(options.scene, context.data_root), options.overlays, context.data_root);
     if (!scene.anatomy.file.empty()) load_anatomy(scene.anatomy.file);
     if (!scene.wire.device.empty()) load_wire(scene.wire.device);
-    if (!scene.catheter.device.empty()) load_catheter(scene.catheter.device);
+    if (!scene.catheter.device.empty()) {
+        if (device_kind(scene.catheter.device) == "passive_catheter")
+            load_sleeve(scene.catheter.device);
+        else
+            load_catheter(scene.catheter.device);
+    }
     if (!scene.script.empty()) Script::load(scene.script);
     // The faults of a mesh show only when it is read, and it is read in seconds.
     if (options.build || !scene.anatomy.imported.mesh.empty())

@@ -134,6 +134,10 @@ void check_reach(double length_mm, const SceneDevice& device) {
                                           device.device + "' is only " + std::to_string(length_mm) + " mm long");
 }
 
+bool passive_catheter(const SceneSpec& spec) {
+    return spec.catheter.enabled && device_kind(spec.catheter.device) == "passive_catheter";
+}
+
 void add_wire(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) {
     WireSpec wire = load_wire(spec.wire.device);
     wire.friction = spec.wall.friction;
@@ -143,8 +147,21 @@ void add_wire(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) 
     check_insertion(entry, way, spec.wire);
     check_reach(wire.length_mm, spec.wire);
     const SheathPose sheath{entry.pose, 60.0};
-    Rod rod(wire, sheath, spec.wire.insertion_mm, way);
-    world.add(world.create(wire_entity), std::move(rod));
+    const Entity e = world.create(wire_entity);
+    if (!passive_catheter(spec)) {
+        world.add(e, Rod(wire, sheath, spec.wire.insertion_mm, way));
+        return;
+    }
+    SleeveSpec sleeve = load_sleeve(spec.catheter.device);
+    sleeve.friction = spec.wall.friction;
+    if (spec.catheter.entry != spec.wire.entry)
+        throw UserError(spec.catheter.where, "entry: found '" + spec.catheter.entry +
+                                                 "'; a passive catheter runs over the wire, which enters at '" +
+                                                 spec.wire.entry + "'");
+    for (const WireSection& section : sleeve.sections) check_width(entry, 0.5 * section.diameter_mm, spec.catheter);
+    check_insertion(entry, way, spec.catheter);
+    check_reach(sleeve.length_mm, spec.catheter);
+    world.add(e, Rod(wire, sleeve, sheath, spec.wire.insertion_mm, spec.catheter.insertion_mm, way));
 }
 
 void add_catheter(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) {
@@ -280,7 +297,11 @@ std::unique_ptr<World> build_world(const SceneSpec& spec, const SceneModels& mod
     world->add(vessel, rest_state(*models.wall));
 
     if (spec.wire.enabled) add_wire(*world, spec, *models.anatomy);
-    if (spec.catheter.enabled) add_catheter(*world, spec, *models.anatomy);
+    if (passive_catheter(spec)) {
+        if (!spec.wire.enabled) throw UserError(spec.catheter.where, "a passive catheter needs a wire to run over");
+    } else if (spec.catheter.enabled) {
+        add_catheter(*world, spec, *models.anatomy);
+    }
     if (spec.heart.enabled) {
         if (!models.anatomy->annulus)
             throw UserError(spec.heart.where, "the heart is enabled, but the anatomy '" + models.anatomy->name +

@@ -54,11 +54,9 @@ Vec3 point_at(const CatheterShape& shape, double arc) {
     return shape.points[i - 1] + t * (shape.points[i] - shape.points[i - 1]);
 }
 
-}  // namespace
-
-double drive_fraction(const Rod& wire, const WireDrive& drive, const StepSettings& settings, double advance_mm) {
-    const double limit = wire.spec().max_push_n * units::newton;
-    const double reaction = advance_mm > 0.0 ? wire.sheath_force_mn() : -wire.sheath_force_mn();
+double fraction_below(double limit, double push_mn, const WireDrive& drive, const StepSettings& settings,
+                      double advance_mm) {
+    const double reaction = advance_mm > 0.0 ? push_mn : -push_mn;
     double fraction = std::clamp((limit - reaction) / (0.2 * limit), 0.0, 1.0);
     if (advance_mm > 0.0) {
         if (drive.head_on_mn > head_on_mn) fraction = std::min(fraction, head_on_advance_mm / advance_mm);
@@ -68,6 +66,17 @@ double drive_fraction(const Rod& wire, const WireDrive& drive, const StepSetting
         fraction = std::min(fraction, std::clamp((most - drive.contact_mn) / (0.2 * most), 0.0, 1.0));
     }
     return fraction;
+}
+
+}  // namespace
+
+double drive_fraction(const Rod& wire, const WireDrive& drive, const StepSettings& settings, double advance_mm) {
+    return fraction_below(wire.spec().max_push_n * units::newton, wire.sheath_force_mn(), drive, settings, advance_mm);
+}
+
+double sleeve_drive_fraction(const Rod& wire, const WireDrive& drive, const StepSettings& settings, double advance_mm) {
+    return fraction_below(wire.sleeve_spec().max_push_n * units::newton, wire.sleeve_force_mn(), drive, settings,
+                          advance_mm);
 }
 
 void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceSamples& samples) {

@@ -23,6 +23,9 @@ struct DeviceSamples {
 /// pulling the other way is always allowed.
 double drive_fraction(const Rod& wire, const WireDrive& drive, const StepSettings& settings, double advance_mm);
 
+/// The same for the drive of a passive catheter over the wire.
+double sleeve_drive_fraction(const Rod& wire, const WireDrive& drive, const StepSettings& settings, double advance_mm);
+
 /// Lists the samples as they are before the prediction (position = previous).
 void begin_samples(const Parts& parts, const CatheterShape& catheter_before, DeviceSamples& samples);
 

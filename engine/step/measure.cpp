@@ -36,6 +36,21 @@ void measure_wire(const Parts& p, const StepSums& sums, double n, Channels& c) {
         p.event("refused", wire_entity, "the drive of the guidewire slipped (mm not taken)", sums.wire_refused_mm);
 }
 
+// A passive catheter over the wire.
+void measure_sleeve(const Parts& p, const StepSums& sums, double n, Channels& c) {
+    c.catheter_insertion_mm = p.wire->sleeve_insertion_mm();
+    c.catheter_rotation_deg = p.wire->sleeve_rotation_rad() / units::deg;
+    put(c.catheter_tip_x_mm, c.catheter_tip_y_mm, c.catheter_tip_z_mm, p.wire->sleeve_tip());
+    c.catheter_force_mn = sums.catheter_mn / n;
+    c.catheter_tip_force_mn = sums.catheter_tip_mn / n;
+    c.catheter_contacts = static_cast<double>(sums.catheter_contacts);
+    c.catheter_penetration_mm = sums.catheter_penetration_mm;
+    c.catheter_refused = sums.catheter_refused;
+    if (sums.catheter_refused > refused_part)
+        p.event("refused", catheter_entity, "the drive of the catheter slipped (part not taken)",
+                sums.catheter_refused);
+}
+
 void measure_catheter(const Parts& p, const StepSums& sums, double n, Channels& c) {
     const CatheterState& state = *p.catheter_state;
     c.catheter_insertion_mm = state.insertion_mm;
@@ -72,6 +87,7 @@ void measure(Parts& p, const Input& /*input*/, const StepSums& sums, Channels& c
     c.time_s = p.world->time_s;
     if (p.wire) measure_wire(p, sums, n, c);
     if (p.catheter) measure_catheter(p, sums, n, c);
+    if (p.wire && p.wire->has_sleeve()) measure_sleeve(p, sums, n, c);
 
     // The force bar's rule: counted while a tip is in contact, along that device's whole shaft.
     const bool touching = sums.tip_region >= 0;
@@ -140,7 +156,9 @@ void advance_imaging(Parts& p, const Input& input, double dt) {
         Injection injection;
         injection.flow_ml_s = input.contrast;
         const bool by_catheter = p.catheter && (input.device >= 0.5 || !p.wire);
-        if (by_catheter)
+        if (p.wire && p.wire->has_sleeve() && input.device >= 0.5)
+            injection.node = p.anatomy->centreline.nearest(p.wire->sleeve_tip());
+        else if (by_catheter)
             injection.node = p.anatomy->centreline.nearest(p.catheter_route->shape.tip.position);
         else if (p.wire)
             injection.node = p.anatomy->centreline.nearest(p.wire->tip());

@@ -44,6 +44,32 @@ void command_wire(Parts& p, const Input& input, double h, StepSums& sums) {
     const double taken = p.wire->command(fraction * wanted, selected ? input.rotate * units::deg * h : 0.0);
     sums.wire_refused_mm += wanted - taken;
     p.wire_drive->refused_mm += std::fabs(wanted - taken);
+    if (!p.wire->has_sleeve()) return;
+    const double fed = selected ? 0.0 : input.advance * h;
+    const double share = fed == 0.0 ? 1.0 : sleeve_drive_fraction(*p.wire, *p.wire_drive, *p.settings, fed);
+    const double sleeve_taken = p.wire->command_sleeve(share * fed, selected ? 0.0 : input.rotate * units::deg * h);
+    if (fed != 0.0)
+        sums.catheter_refused = std::max(sums.catheter_refused, std::clamp(1.0 - sleeve_taken / fed, 0.0, 1.0));
+}
+
+// Of the contacts of a wire with a passive catheter over it: what is the catheter's, from its tip on.
+void add_sleeve_report(const Parts& p, StepSums& sums) {
+    const auto rows = p.contacts->rows();
+    const auto wall = p.contacts->wall_rows();
+    const double tip = std::max(0.0, p.wire->insertion_mm() - p.wire->sleeve_insertion_mm());
+    const double tip_length = p.contacts->settings().tip_length_mm;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (wall[i].device != wire_device || wall[i].arc_mm < tip) continue;
+        const double force = rows[i].multiplier;
+        sums.catheter_penetration_mm = std::max(sums.catheter_penetration_mm, -rows[i].gap);
+        if (force <= 0.0) continue;
+        sums.catheter_mn += force;
+        sums.wire_mn -= force;
+        ++sums.catheter_contacts;
+        --sums.wire_contacts;
+        if (wall[i].arc_mm <= tip_length) sums.wire_tip_mn -= force;
+        if (wall[i].arc_mm <= tip + tip_length) sums.catheter_tip_mn += force;
+    }
 }
 
 // The wire's rows against the wall and against the bore, as one span for one chain solve.
@@ -111,6 +137,10 @@ void add_report(const Parts& p, const ContactReport& report, StepSums& sums) {
         }
     }
     sums.imbalance = std::max(sums.imbalance, report.force_imbalance);
+    if (p.wire && p.wire->has_sleeve()) {
+        sums.catheter_contacts = 0;
+        add_sleeve_report(p, sums);
+    }
     const auto rows = p.contacts->rows();
     const auto wall = p.contacts->wall_rows();
     sums.tip_region = -1;
@@ -128,10 +158,14 @@ void add_report(const Parts& p, const ContactReport& report, StepSums& sums) {
                 p.wire_drive->head_on_mn -=
                     rows[i].multiplier * rows[i].normal.dot(p.wire->link_pose(0).orientation * Vec3::UnitZ());
         }
-        if (wall[i].arc_mm <= p.contacts->settings().tip_length_mm && rows[i].multiplier > strongest) {
+        const bool sleeve = p.wire && p.wire->has_sleeve() && wall[i].device == wire_device;
+        const double front = sleeve ? std::max(0.0, p.wire->insertion_mm() - p.wire->sleeve_insertion_mm()) : 0.0;
+        const bool behind = sleeve && wall[i].arc_mm >= front;
+        if (wall[i].arc_mm - (behind ? front : 0.0) <= p.contacts->settings().tip_length_mm &&
+            rows[i].multiplier > strongest) {
             strongest = rows[i].multiplier;
             sums.tip_region = wall[i].region;
-            sums.tip_device = wall[i].device;
+            sums.tip_device = behind ? catheter_device : wall[i].device;
         }
     }
 }
