@@ -67,14 +67,7 @@ public:
                 tip = place(act, state);
             }
             if (driven) tip += effects.drive().support_displacement[0];
-            if (read) {
-                Channels channels;
-                channels.catheter_tip_x_mm = tip.x();
-                channels.catheter_tip_y_mm = tip.y();
-                channels.catheter_tip_z_mm = tip.z();
-                effects.measure(channels);
-                tip = {channels.catheter_tip_x_mm, channels.catheter_tip_y_mm, channels.catheter_tip_z_mm};
-            }
+            if (read) tip = effects.read_tip(tip);
             for (std::size_t c = 0; c < out.size(); ++c) out[c][i] -= tip[axis_[c]];
         }
         return out;

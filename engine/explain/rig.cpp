@@ -76,6 +76,15 @@ void RigEffects::measure(Channels& channels) {
         if ((trials_[k].effect->hooks & hook_measure) != 0) made_[k]->measure(context_, channels);
 }
 
+Vec3 RigEffects::read_tip(const Vec3& tip) {
+    Channels channels;
+    channels.catheter_tip_x_mm = tip.x();
+    channels.catheter_tip_y_mm = tip.y();
+    channels.catheter_tip_z_mm = tip.z();
+    measure(channels);
+    return {channels.catheter_tip_x_mm, channels.catheter_tip_y_mm, channels.catheter_tip_z_mm};
+}
+
 bool RigEffects::uses(unsigned hooks) const {
     return std::any_of(trials_.begin(), trials_.end(),
                        [&](const EffectTrial& trial) { return (trial.effect->hooks & hooks) != 0; });

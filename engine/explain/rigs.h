@@ -25,6 +25,8 @@ public:
     /// What the drive asks of a support that moves in full, and of the heart; valid until the next call.
     const Drive& drive();
     void measure(Channels& channels);
+    /// Where a sensor reads a tip that is there, mm.
+    Vec3 read_tip(const Vec3& tip);
     bool uses(unsigned hooks) const;
 
 private:

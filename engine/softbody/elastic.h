@@ -36,9 +36,9 @@ struct ElasticGroups {
 
 ElasticGroups pack_shell(const ShellModel& shell);
 
-/// k_i at rest, mN/mm, as small as passes converge with: the largest eigenvalue of the wall's stiffness over k is 5/4.  A
-/// substep's first forces are those at x + h v, so that a shape of eigenvalue m goes by z^2 + 2 (m - 1) z - (m - 1) = 0,
-/// which leaves the unit circle at m = 4/3.
+/// k_i at rest, mN/mm, as small as passes converge with: the largest eigenvalue of the wall's stiffness over k is 5/4.
+/// A substep's first forces are those at x + h v, so that a shape of eigenvalue m goes by z^2 + 2 (m - 1) z - (m - 1) =
+/// 0, which leaves the unit circle at m = 4/3.
 std::vector<double> holding_stiffness(const ShellModel& shell, std::span<const Vec3> rest);
 
 /// k_i now: that at rest times the largest factor by which a triangle round the particle has stiffened.

@@ -445,7 +445,8 @@ void apply_touched(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScr
 
 void finish(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
             const Workers& workers) {
-    if (elastic(model) && model.damping_per_s > 0.0) {  // the velocities go over to those of the clusters' rigid motions here as well
+    if (elastic(model) &&
+        model.damping_per_s > 0.0) {  // the velocities go over to those of the clusters' rigid motions here as well
         fit_all(model, state, scratch, workers);
         workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
             gather(model, scratch, kernel::best(), begin, end);

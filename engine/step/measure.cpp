@@ -36,16 +36,20 @@ void measure_wire(const Parts& p, const StepSums& sums, double n, Channels& c) {
         p.event("refused", wire_entity, "the drive of the guidewire slipped (mm not taken)", sums.wire_refused_mm);
 }
 
-// A passive catheter over the wire.
-void measure_sleeve(const Parts& p, const StepSums& sums, double n, Channels& c) {
-    c.catheter_insertion_mm = p.wire->sleeve_insertion_mm();
-    c.catheter_rotation_deg = p.wire->sleeve_rotation_rad() / units::deg;
-    put(c.catheter_tip_x_mm, c.catheter_tip_y_mm, c.catheter_tip_z_mm, p.wire->sleeve_tip());
+void measure_catheter_contact(const StepSums& sums, double n, Channels& c) {
     c.catheter_force_mn = sums.catheter_mn / n;
     c.catheter_tip_force_mn = sums.catheter_tip_mn / n;
     c.catheter_contacts = static_cast<double>(sums.catheter_contacts);
     c.catheter_penetration_mm = sums.catheter_penetration_mm;
     c.catheter_refused = sums.catheter_refused;
+}
+
+// A passive catheter over the wire.
+void measure_sleeve(const Parts& p, const StepSums& sums, double n, Channels& c) {
+    c.catheter_insertion_mm = p.wire->sleeve_insertion_mm();
+    c.catheter_rotation_deg = p.wire->sleeve_rotation_rad() / units::deg;
+    put(c.catheter_tip_x_mm, c.catheter_tip_y_mm, c.catheter_tip_z_mm, p.wire->sleeve_tip());
+    measure_catheter_contact(sums, n, c);
     if (sums.catheter_refused > refused_part)
         p.event("refused", catheter_entity, "the drive of the catheter slipped (part not taken)",
                 sums.catheter_refused);
@@ -58,11 +62,7 @@ void measure_catheter(const Parts& p, const StepSums& sums, double n, Channels& 
     if (!state.bend_rad.empty()) c.catheter_proximal_bend_deg = state.bend_rad.front() / units::deg;
     if (state.bend_rad.size() > 1) c.catheter_distal_bend_deg = state.bend_rad.back() / units::deg;
     put(c.catheter_tip_x_mm, c.catheter_tip_y_mm, c.catheter_tip_z_mm, p.catheter_route->shape.tip.position);
-    c.catheter_force_mn = sums.catheter_mn / n;
-    c.catheter_tip_force_mn = sums.catheter_tip_mn / n;
-    c.catheter_contacts = static_cast<double>(sums.catheter_contacts);
-    c.catheter_penetration_mm = sums.catheter_penetration_mm;
-    c.catheter_refused = sums.catheter_refused;
+    measure_catheter_contact(sums, n, c);
     if (sums.catheter_refused > refused_part)
         p.event("refused", catheter_entity, "the wall took a part of the catheter's command only (part refused)",
                 sums.catheter_refused);
