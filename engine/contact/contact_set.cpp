@@ -64,6 +64,7 @@ void warm_start(std::span<ChainRow> rows, std::span<const ChainRow> old_rows) {
         ChainRow& row = rows[nearest];
         row.multiplier = likeness < 1.0 - 1e-12 ? old.multiplier * likeness : old.multiplier;
         row.tangent_force = into_cone(tangential(old.tangent_force, row.normal), row.friction * row.multiplier);
+        row.held = tangential(old.held, row.normal);
     }
 }
 
@@ -144,7 +145,7 @@ ContactSet::Found ContactSet::look(const LumenSurfaceModel& model, const LumenSu
 
 void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
                         std::span<const DeviceSample> samples, double margin, std::span<const Vec3> particles_before,
-                        std::span<const double> particle_compliance, const Workers& workers) {
+                        std::span<const double> particle_compliance, const Workers& workers, bool again) {
     CATHLAB_CHECK(margin > 0.0, "contact margin must be positive");
     CATHLAB_CHECK(
         particles_before.size() >= at(model.particle_count) && particle_compliance.size() == particles_before.size(),
@@ -156,7 +157,9 @@ void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState&
         CATHLAB_CHECK(s.radius > 0.0 && std::isfinite(s.radius) && s.friction >= 0.0, "a device sample needs a radius");
     }
     const Memory old_memory = std::move(memory_);
-    const std::vector<ChainRow> old_rows = std::move(rows_);
+    std::vector<ChainRow> old_rows = std::move(rows_);
+    if (!again)
+        for (ChainRow& row : old_rows) row.held = row.tangent_force;
     memory_ = {};
     rows_.clear();
     wall_.clear();
@@ -394,8 +397,9 @@ void ContactSet::solve_kinematic(std::span<const DeviceSample> samples_now, std:
             const Vec3 slip =
                 tangential(Vec3((s.position - sample_before_[at(wall.sample)]) - (q - wall.point_before)), row.normal);
             const double multiplier = std::max(0.0, row.multiplier - (gap + alpha * row.multiplier) / compliance);
-            const Vec3 held = tangential(row.tangent_force, row.normal);
-            const Vec3 tangent = into_cone(held - (slip + alpha * held) / compliance, row.friction * multiplier);
+            const Vec3 now = tangential(row.tangent_force, row.normal);
+            const Vec3 tangent =
+                into_cone(now - (slip + alpha * (now - row.held)) / compliance, row.friction * multiplier);
             const Vec3 change = (multiplier - row.multiplier) * row.normal + (tangent - row.tangent_force);
             row.multiplier = multiplier;
             row.tangent_force = tangent;

@@ -80,10 +80,11 @@ public:
     /// Makes the rows of this substep, sorted by (device, arc length, nearest wall first), warm started from the last
     /// ones. samples: in any order, each (device, arc_mm) once.  margin: mm, > 1 at the default substep (see above).
     /// particles_before, particle_compliance: one a particle, positions at the beginning of the substep (mm) and c_j
-    /// (mm/mN). Throws std::logic_error for samples that are not finite or have no radius.
+    /// (mm/mN).  again: another look in the same substep, so that friction still starts from the forces with which the
+    /// substep began.  Throws std::logic_error for samples that are not finite or have no radius.
     void detect(const LumenSurfaceModel& model, const LumenSurfaceState& surface, std::span<const DeviceSample> samples,
                 double margin, std::span<const Vec3> particles_before, std::span<const double> particle_compliance,
-                const Workers& workers);
+                const Workers& workers, bool again = false);
 
     /// Gap, slip and arm of every row from the samples (same number and order as in detect; position, arm and rotation
     /// are read) and the particles where they are now.  Normal, weights and compliance stay.

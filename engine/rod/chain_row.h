@@ -20,6 +20,7 @@ struct ChainRow {
     double friction = 0.0;     ///< Coulomb coefficient; 0 = none
     Vec3 slip = Vec3::Zero();  ///< tangential motion of the point against the partner since the substep began, mm
     Vec3 tangent_force = Vec3::Zero();  ///< in/out: friction force on the link, mN, world; |.| <= friction * multiplier
+    Vec3 held = Vec3::Zero();           ///< friction force when the substep began, mN: what sticks keeps it
 };
 
 }  // namespace cathlab

@@ -8,15 +8,15 @@
 namespace cathlab {
 namespace {
 
-constexpr double creep_mm_s = 0.5;        // speed below which friction is a stiff viscous force
-constexpr int rubbing_passes = 4;         // passes in which friction may grow or turn
-constexpr int engaging_passes = 12;       // passes in which rows may engage
-constexpr int last_rubbing_pass = 30;     // a row that still leaves its cone then loses its friction
-constexpr double slide_tolerance = 0.9;   // of the law's force: less is mended while passes last
-constexpr double inside_cone = 0.99;      // of the cone: aim, so that a small loss of normal force leaves a row legal
-constexpr double well_inside_cone = 0.9;  // the same when passes run out
-constexpr double side_drag_per_mm = 1.5;  // holds for hollows of 1 mm radius and wider
-constexpr double cone_tolerance = 1e-9;   // of the cone's half width
+constexpr double creep_mm_s = 0.5;         // speed below which friction is a stiff viscous force
+constexpr int rubbing_passes = 6;          // passes in which friction may grow or turn
+constexpr int engaging_passes = 12;        // passes in which rows may engage
+constexpr int last_rubbing_pass = 30;      // a row that still leaves its cone then loses its friction
+constexpr double slide_tolerance = 0.95;   // of the law's force: less is mended while passes last
+constexpr double inside_cone = 0.99;       // of the cone: aim, so that a small loss of normal force leaves a row legal
+constexpr double well_inside_cone = 0.95;  // the same when passes run out
+constexpr double side_drag_per_mm = 1.5;   // holds for hollows of 1 mm radius and wider
+constexpr double cone_tolerance = 1e-9;    // of the cone's half width
 
 Vec3 across(const Vec3& v, const Vec3& normal) {
     return v - normal * normal.dot(v);
@@ -27,16 +27,21 @@ void check_row(const ChainRow& row) {
     CATHLAB_CHECK(std::isfinite(row.compliance) && row.compliance >= 1e-12, "a chain row's compliance must be > 0");
     const double sum = row.arm.squaredNorm() + row.normal.squaredNorm() + std::fabs(row.gap) +
                        std::fabs(row.multiplier) + row.slip.squaredNorm() + row.tangent_force.squaredNorm() +
-                       std::fabs(row.friction);
+                       row.held.squaredNorm() + std::fabs(row.friction);
     CATHLAB_CHECK(std::isfinite(sum), "a chain row is not finite");
     CATHLAB_CHECK(std::fabs(row.normal.squaredNorm() - 1.0) < 1e-6, "a chain row's normal must be a unit vector");
 }
 
 }  // namespace
 
-// k of the law |f| = min(mu load, mu load |s'| / s_0) seen as a secant through no slip, no force.
-void ChainRows::set_rub(Work& w, double load, double slip, double share) const {
-    w.rub = share * w.row.friction * load / std::max(slip, rest_slip_);
+// z and k of the law |f| = min(k_0, mu load / |s' + z|) |s' + z| at a load and a slip s'.  share: aim, in cones, of
+// what slides.
+void ChainRows::set_rub(Work& w, double load, const Vec3& slip, double share) const {
+    const double cone = w.row.friction * load, most = cone / rest_slip_;
+    const Vec3 held = across(w.row.held, w.row.normal);
+    const double size = held.norm();
+    w.bent = (size > cone ? -rest_slip_ / size : -1.0 / most) * held;
+    w.rub = std::min(most, share * cone / std::max((slip + w.bent).norm(), 1e-3 * rest_slip_));
     w.rub_with_wall = w.rub / (1.0 + w.rub * w.row.compliance);
 }
 
@@ -54,8 +59,7 @@ void ChainRows::begin(std::span<const ChainRow> rows, std::span<const Vec3> axis
         const double first = w.row.multiplier - w.row.gap / w.row.compliance;
         w.active = w.row.bilateral || first > 0.0;
         const double load = std::max(0.0, w.row.multiplier);
-        if (w.active && w.row.friction > 0.0 && load > 0.0)
-            set_rub(w, load, across(w.row.slip, w.row.normal).norm(), 1.0);
+        if (w.active && w.row.friction > 0.0 && load > 0.0) set_rub(w, load, across(w.row.slip, w.row.normal), 1.0);
         const std::size_t link = static_cast<std::size_t>(w.row.link);
         if (link < free_links && w.row.multiplier != 0.0) {
             const Vec3 b = w.row.normal.cross(axis[link]);
@@ -93,7 +97,7 @@ void ChainRows::add_to(std::size_t link, Mat6& diagonal, Vec6& right) const {
             Eigen::Matrix<double, 3, 6> b;
             const Mat3 p = Mat3::Identity() - w.row.normal * w.row.normal.transpose();
             b << p, p * hat;
-            const Vec3 now = across(w.row.slip, w.row.normal) - w.row.compliance * w.row.tangent_force;
+            const Vec3 now = across(w.row.slip, w.row.normal) + w.bent - w.row.compliance * w.row.tangent_force;
             diagonal += w.rub_with_wall * b.transpose() * b;
             right -= w.rub_with_wall * b.transpose() * now;
         }
@@ -128,11 +132,12 @@ bool ChainRows::update_friction(Work& w, const Vec6& d, int pass) const {
     const Vec3 without = across(w.row.slip, w.row.normal) + moved - w.row.compliance * w.row.tangent_force;
     if (w.rub <= 0.0) {
         if (!may_grow || cone <= 0.0) return false;
-        set_rub(w, load, without.norm(), inside_cone);
+        set_rub(w, load, without, inside_cone);
         return true;
     }
-    w.tangent = -w.rub_with_wall * without;
-    const double force = w.tangent.norm(), slip = force / w.rub;
+    w.tangent = -w.rub_with_wall * (without + w.bent);
+    const double force = w.tangent.norm(), stretch = force / w.rub;  // |s' + z|
+    const Vec3 slip = -w.tangent / w.rub - w.bent;
     if (force > cone * (1.0 + cone_tolerance)) {
         if (pass >= last_rubbing_pass) {
             w.rub = 0.0;
@@ -141,7 +146,7 @@ bool ChainRows::update_friction(Work& w, const Vec6& d, int pass) const {
         }
         return true;
     }
-    if (!may_grow || force >= slide_tolerance * cone * std::min(1.0, slip / rest_slip_)) return false;
+    if (!may_grow || force >= slide_tolerance * cone * std::min(1.0, stretch / rest_slip_)) return false;
     set_rub(w, load, slip, inside_cone);
     return true;
 }

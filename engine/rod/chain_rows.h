@@ -4,10 +4,12 @@
 //   lambda' = lambda - (gap + J d) / c,   lambda' >= 0 unless bilateral;
 // an active row adds J^T J / c to its link's block and J^T (lambda - gap / c) to the right-hand side.
 //
-// Friction: f' = -k s' with the slip s' = slip + P (dx + dtheta x arm) + c (f' - f), P = I - n n^T: the partner gives
-// way sideways as it does along the normal.  k = mu lambda' / max(|s'|, s_0), s_0 = 0.5 mm/s x h, makes this Coulomb's
-// law, smooth at rest (as in [li2020]); k is found over the passes.  A force that is linear in the slip inside the
-// solve can never turn a light link round, as a constant sliding force would.
+// Friction: f' = -k (s' + z) with the slip s' = slip + P (dx + dtheta x arm) + c (f' - f), P = I - n n^T: the partner
+// gives way sideways as it does along the normal.  k = min(k_0, mu lambda' / |s' + z|), k_0 = mu lambda' / s_0,
+// s_0 = 0.5 mm/s x h, is Coulomb's law with a spring of stiffness k_0 in it, and z = -held / k_0 is by how much that
+// spring is bent already when the substep begins: what does not move keeps its force, and none is lost to creep
+// [haessig1991]. k is found over the passes.  A force that is linear in the slip inside the solve can never turn a
+// light link round, as a constant sliding force would.
 //
 // Side drag: a wall is hollow across the wire, so a contact force holds the wire in the hollow like a spring lambda / R
 // that the frozen normal hides from the solve; stepped explicitly it throws a light wire from side to side.  Blood
@@ -48,6 +50,7 @@ private:
         Vec6 jacobian;
         bool active = false;
         double rub = 0.0;             // k, mN/mm
+        Vec3 bent = Vec3::Zero();     // z, mm
         double rub_with_wall = 0.0;   // k / (1 + k c)
         Vec6 side;                    // [b, arm x b]
         double side_stiffness = 0.0;  // mN/mm
@@ -55,7 +58,7 @@ private:
         Vec3 tangent = Vec3::Zero();
     };
 
-    void set_rub(Work& w, double load, double slip, double share) const;
+    void set_rub(Work& w, double load, const Vec3& slip, double share) const;
     bool update_normal(Work& w, const Vec6& d, bool may_engage) const;
     bool update_friction(Work& w, const Vec6& d, int pass) const;
 

@@ -31,7 +31,7 @@ constexpr double stale_mm = 0.2;
 constexpr double pressed_mn = 100.0;
 constexpr double front_pressed_mn = 2.0;
 constexpr double pressed_depth_mm = 0.25;
-constexpr int extra_passes = 3;
+constexpr int extra_passes = 8;
 // What is deeper than that after the last of them is taken out to so much.
 constexpr double pushed_out_mm = 0.2;
 // Within a step the lumen surface follows the wall up to this far from the devices.
@@ -107,7 +107,8 @@ double pressed_depth(Parts& p, const DeviceSamples& samples, StepSums& sums) {
 
 // Rows for the samples where they are now, against the wall at `particles`.  The surface follows as a whole once a
 // step, and then where devices are.
-void find_contacts(Parts& p, DeviceSamples& samples, std::span<const Vec3> particles, StepSums& sums) {
+void find_contacts(Parts& p, DeviceSamples& samples, std::span<const Vec3> particles, StepSums& sums,
+                   bool again = false) {
     refresh_samples(p, samples);
     const Workers& workers = p.world->workers();
     if (sums.surface_near) {
@@ -119,7 +120,7 @@ void find_contacts(Parts& p, DeviceSamples& samples, std::span<const Vec3> parti
         sums.surface_near = part_near(p.surface->tree, p.surface_state->boxes, places, surface_reach_mm);
     }
     p.contacts->detect(*p.surface, *p.surface_state, samples.list, p.settings->contact_margin_mm, p.wall_scratch->start,
-                       p.wall_scratch->compliance, p.world->workers());
+                       p.wall_scratch->compliance, p.world->workers(), again);
 }
 
 void add_report(const Parts& p, const ContactReport& report, StepSums& sums) {
@@ -259,7 +260,7 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
         if (pass + 1 < passes) continue;
         too_deep = pressed_depth(p, samples, sums) > pressed_depth_mm;
         if (passes < p.settings->iterations + extra_passes && (too_deep || p.contacts->staleness() > stale_mm)) {
-            find_contacts(p, samples, state.x, sums);
+            find_contacts(p, samples, state.x, sums, true);
             looked_again = true;
             ++passes;
         }

@@ -139,6 +139,49 @@ TEST(Torque, FrictionWindsTheWireUpBeforeTheTipTurns) {
     EXPECT_NEAR(wire.rod.sheath_torque_mn_mm(), q * length, 0.03 * q * length);
 }
 
+TEST(Torque, ATurnThatFrictionHoldsIsStillThereAfterARest) {
+    // Turned by less than it takes to move the tip: the twist reaches as far as the torque lasts, and stays.
+    const WireSpec spec = test::bmw(2.5);
+    GuidedWire wire(Rod(spec, {}, 301.25));
+    wire.friction = 0.3;
+    wire.compliance = 1e-7;
+    wire.walls = [&](const RodSample& sample, std::vector<Touch>& out) {
+        for (const double side : {1.0, -1.0})
+            out.push_back({side * Vec3::UnitY(), side * sample.position.y() - 5.0 * wire.compliance});
+    };
+    for (int i = 0; i < 100; ++i) wire.step(0.005, 0.0, 0.001);
+    const double torque = wire.rod.sheath_torque_mn_mm();
+    EXPECT_GT(torque, 20.0);
+    for (int i = 0; i < 2000; ++i) wire.step(0.005);
+    std::printf("torque %.3f mN mm, after 10 s at rest %.3f\n", torque, wire.rod.sheath_torque_mn_mm());
+    EXPECT_NEAR(wire.rod.sheath_torque_mn_mm(), torque, 0.01 * torque);
+}
+
+TEST(Slope, AWireOnASlopeBelowTheAngleOfFrictionStays) {
+    // It lies along a slope of rise over run; what pulls it down across its axis is that part of its weight.
+    const double mu = 0.3, weight = 2.0;  // mN a link
+    for (const double slope : {0.15, 0.27, 0.33}) {
+        GuidedWire wire(Rod(test::uniform_wire(1.0, 0.356, 2.5), {}, 200.0));
+        wire.friction = mu;
+        wire.walls = [&](const RodSample& sample, std::vector<Touch>& out) {
+            out.push_back({Vec3::UnitY(), sample.position.y(), sample.radius * Vec3::UnitY()});  // it cannot roll
+        };
+        const double length = std::sqrt(1.0 + slope * slope);
+        const std::vector<Vec3> down(wire.rod.free_link_count(), weight / length * Vec3(slope, -1.0, 0.0));
+        const std::vector<Vec3> level(down.size(), weight / length * Vec3(0.0, -1.0, 0.0));
+        for (int i = 0; i < 100; ++i) wire.step(0.004, 0.0, 0.0, level);
+        const double start = wire.rod.tip().x();
+        for (int i = 0; i < 2500; ++i) wire.step(0.004, 0.0, 0.0, down);
+        const double slid = wire.rod.tip().x() - start;
+        std::printf("slope %.2f, friction %.2f: slid %.5f mm in 10 s\n", slope, mu, slid);
+        if (slope < mu) {
+            EXPECT_LT(slid, 0.003);  // the bristle's own length, 0.5 mm/s in a substep
+        } else {
+            EXPECT_GT(slid, 1.0);
+        }
+    }
+}
+
 /// Angle at the tip of a wire with rest curvature k0 held to a curve k: GJ a'' = EI k0 k sin a, a(0) = sheath, a'(L) =
 /// 0.
 double whipped_tip(double sheath, double length, double ei_k0_k_over_gj) {

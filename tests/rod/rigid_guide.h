@@ -1,5 +1,4 @@
-// A wire among rigid things: walls that give way by next to nothing, with friction.  (The walls' way to the side under
-// friction begins anew in each step: keep compliance x friction far below the slip of a step.)
+// A wire among rigid things: walls that give way by next to nothing, with friction.
 #pragma once
 
 #include <functional>
@@ -46,6 +45,7 @@ struct GuidedWire {
                     ChainRow row;
                     const std::size_t n = rows.size();
                     if (n < before.size() && before[n].link == sample.link) row = before[n];
+                    if (k == 0) row.held = row.tangent_force;
                     row.link = sample.link;
                     row.normal = touch.normal;
                     row.arm = sample.arm + touch.offset - touch.normal * (touch.bilateral ? 0.0 : sample.radius);
@@ -56,7 +56,7 @@ struct GuidedWire {
                     const Pose now = rod.link_pose(static_cast<std::size_t>(sample.link));
                     const Pose& was = start[static_cast<std::size_t>(sample.link)];
                     const Vec3 moved = row.arm + now.position - was.to_world(now.orientation.conjugate() * row.arm);
-                    row.slip = moved - row.normal * row.normal.dot(moved) + compliance * row.tangent_force;
+                    row.slip = moved - row.normal * row.normal.dot(moved) + compliance * (row.tangent_force - row.held);
                     rows.push_back(row);
                     at.push_back(sample);
                 }

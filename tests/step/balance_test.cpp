@@ -24,6 +24,13 @@ TEST(Balance, AtRestTheForcesOfWallAndSheathSumToNothing) {
         std::printf("%s: wall %.2f mN, with the sheath's %.5f\n", c.rig, wall.norm(), (wall + sheath).norm());
         EXPECT_GT(wall.norm(), 1.0);
         EXPECT_LT((wall + sheath).norm(), 0.001 * wall.norm());
+        const Vec3 tip = run.parts.wire->tip();
+        run.step({}, 250);
+        const Vec3 later = run.parts.contacts->report(run.parts.wall_state->x).devices.front().force_mn;
+        std::printf("  5 s later: tip moved %.5f mm, wall %.2f mN\n", (run.parts.wire->tip() - tip).norm(),
+                    later.norm());
+        EXPECT_LT((run.parts.wire->tip() - tip).norm(), 0.01);
+        EXPECT_NEAR(later.norm(), wall.norm(), 0.01 * wall.norm());
     }
 }
 

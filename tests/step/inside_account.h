@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "contact/closest_point.h"
@@ -60,8 +61,9 @@ inline std::vector<DevicePoint> device_points(const Parts& parts) {
 struct InsideAccount {
     double deepest_mm = 0.0;  ///< of a sphere beyond the surface: radius - signed distance of its centre, >= 0
     DevicePoint deepest;      ///< where that is
-    int outside = 0;          ///< centres beyond the wall by more than their radius
-    std::size_t points = 0;   ///< how many were looked at
+    double deepest_in_coronaries_mm = 0.0;  ///< of those whose nearest wall is a coronary artery's
+    int outside = 0;                        ///< centres beyond the wall by more than their radius
+    std::size_t points = 0;                 ///< how many were looked at
 };
 
 /// Skins the whole surface to the particles as they are now and looks for the closest of all its points to every device
@@ -93,6 +95,11 @@ inline InsideAccount inside_account(const Parts& parts, LumenSurfaceState& surfa
             account.deepest_mm = depth;
             account.deepest = point;
         }
+        const auto region =
+            static_cast<std::size_t>(parts.surface->triangle_region[static_cast<std::size_t>(wall.triangle)]);
+        if (depth > account.deepest_in_coronaries_mm &&
+            parts.anatomy->regions[region].name.find("coronary") != std::string::npos)
+            account.deepest_in_coronaries_mm = depth;
         account.outside += distance < -point.radius ? 1 : 0;
         last = &point;
         last_distance = distance;

@@ -1,6 +1,6 @@
 // Full-speed random operation of both devices: nothing leaves the lumen and nothing bursts, whatever the hands do.
 //
-// CATHLAB_RANDOM_SECONDS lengthens each run (docs/validation.md).
+// CATHLAB_RANDOM_SECONDS lengthens each run, CATHLAB_RANDOM_SEEDS makes more of them (docs/validation.md).
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -17,15 +17,20 @@ namespace {
 
 constexpr double limit_mm = 0.5;
 
-/// Seconds of simulated time of a run.
-double run_seconds(double otherwise) {
-    const char* text = std::getenv("CATHLAB_RANDOM_SECONDS");
+/// A positive number of the environment.
+double from_environment(const char* name, double otherwise) {
+    const char* text = std::getenv(name);
     if (!text) return otherwise;
     char* end = nullptr;
-    const double seconds = std::strtod(text, &end);
-    if (end != text && *end == '\0' && seconds > 0.0 && seconds < 1e6) return seconds;
-    ADD_FAILURE() << "CATHLAB_RANDOM_SECONDS: found '" << text << "', allowed are seconds above 0";
+    const double number = std::strtod(text, &end);
+    if (end != text && *end == '\0' && number > 0.0 && number < 1e6) return number;
+    ADD_FAILURE() << name << ": found '" << text << "', allowed are numbers above 0";
     return otherwise;
+}
+
+/// Seconds of simulated time of a run.
+double run_seconds(double otherwise) {
+    return from_environment("CATHLAB_RANDOM_SECONDS", otherwise);
 }
 
 /// New commands every 0.7 s, mostly at full speed and mostly inward: any device, turn, bend and direction.
@@ -54,7 +59,7 @@ std::string place(const DevicePoint& point, double time_s) {
 void operate_at_random(const SceneSpec& spec, const SceneModels& models, std::uint64_t seed, double seconds) {
     RigRun run(build_world(spec, models, seed, 1));
     LumenSurfaceState surface;
-    double deepest = 0.0;
+    double deepest = 0.0, in_coronaries = 0.0, energy_uj = 0.0;
     std::string where = "nowhere";
     int too_deep = 0, outside = 0;
     double imbalance = 0.0, touched = 0.0;
@@ -68,6 +73,8 @@ void operate_at_random(const SceneSpec& spec, const SceneModels& models, std::ui
             deepest = account.deepest_mm;
             where = place(account.deepest, run.world->time_s);
         }
+        in_coronaries = std::max(in_coronaries, account.deepest_in_coronaries_mm);
+        energy_uj = std::max(energy_uj, run.channels.wall_kinetic_energy_uj + run.parts.wire->energy_uj());
         too_deep += account.deepest_mm >= limit_mm ? 1 : 0;
         outside += account.outside > 0 ? 1 : 0;
         imbalance = std::max(imbalance, run.channels.momentum_residual);
@@ -78,7 +85,9 @@ void operate_at_random(const SceneSpec& spec, const SceneModels& models, std::ui
     EXPECT_LT(imbalance, 1e-6);
     EXPECT_GT(touched, 1.0) << "nothing was touched";
     std::cout << "seed " << seed << ", " << seconds << " s: deepest " << deepest << " mm " << where
-              << "; imbalance of forces " << imbalance << "; largest force " << touched << " mN" << std::endl;
+              << ", in the coronaries " << in_coronaries << " mm; outside in " << outside << " steps; energy up to "
+              << energy_uj << " uJ; imbalance of forces " << imbalance << "; largest force " << touched << " mN"
+              << std::endl;
 }
 
 constexpr std::uint64_t seeds = 5;
@@ -94,6 +103,7 @@ void operate_with_every_seed(const SceneSpec& spec, double seconds, std::uint64_
     BuildOptions options;
     options.cache_folder = models_folder();
     const auto models = build_models(spec, options);
+    last = static_cast<std::uint64_t>(from_environment("CATHLAB_RANDOM_SEEDS", static_cast<double>(last)));
     for (std::uint64_t seed = 1; seed <= last; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         operate_at_random(spec, *models, seed, seconds);
