@@ -140,7 +140,7 @@ bool passive_catheter(const SceneSpec& spec) {
 
 void add_wire(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) {
     WireSpec wire = load_wire(spec.wire.device);
-    wire.friction = spec.wall.friction;
+    wire.friction = spec.wall.friction.value_or(wire.friction);
     const EntrySite& entry = find_entry(anatomy, spec.wire);
     for (const WireSection& section : wire.sections) check_width(entry, 0.5 * section.diameter_mm, spec.wire);
     const std::vector<Vec3> way = way_in(anatomy, entry);
@@ -153,7 +153,7 @@ void add_wire(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) 
         return;
     }
     SleeveSpec sleeve = load_sleeve(spec.catheter.device);
-    sleeve.friction = spec.wall.friction;
+    sleeve.friction = spec.wall.friction.value_or(sleeve.friction);
     if (spec.catheter.entry != spec.wire.entry)
         throw UserError(spec.catheter.where, "entry: found '" + spec.catheter.entry +
                                                  "'; a passive catheter runs over the wire, which enters at '" +
@@ -166,7 +166,7 @@ void add_wire(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) 
 
 void add_catheter(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) {
     CatheterSpec catheter = load_catheter(spec.catheter.device);
-    catheter.friction = spec.wall.friction;
+    catheter.friction = spec.wall.friction.value_or(catheter.friction);
     const EntrySite& entry = find_entry(anatomy, spec.catheter);
     check_width(entry, catheter.radius_mm(), spec.catheter);
     check_insertion(entry, way_in(anatomy, entry), spec.catheter);

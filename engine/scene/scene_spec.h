@@ -58,7 +58,7 @@ struct SceneWall {
     double surrounding_kpa_s_per_mm = 0.002;  ///< its damping
     double max_speed_mm_s = 150.0;
     std::string precision = "float";  ///< of the cluster fits; positions are double in either
-    double friction = 0.1;
+    std::optional<double> friction;   ///< of every device against the wall; empty = each device's own
     std::vector<SceneWallRegion> regions;
 };
 

@@ -86,7 +86,8 @@ Table<SceneWall> wall_table() {
                 "of the cluster fits; positions and forces are double in either")
         .number("damping_per_s", &SceneWall::damping_per_s, "1/s", {0, 1000},
                 "rate at which motion against the clusters dies")
-        .number("friction", &SceneWall::friction, "1", {0, 2}, "Coulomb coefficient between wall and devices")
+        .number("friction", &SceneWall::friction, "1", {0, 2},
+                "Coulomb coefficient of every device against the wall, instead of the device files' own")
         .tables("region", &SceneWall::regions, region);
 }
 

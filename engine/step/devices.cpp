@@ -110,7 +110,8 @@ void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceS
             if (arc < 2.0 * s.radius) d.walls = walls_of_a_tip;
             d.link = s.link;
             d.arm = s.arm;
-            d.friction = wire.spec().friction;
+            const bool tube = wire.has_sleeve() && link >= wire.front_count();
+            d.friction = tube ? wire.sleeve_spec().friction : wire.spec().friction;
             samples.list.push_back(d);
         }
     }
