@@ -11,6 +11,12 @@ double CatheterSpec::steerable_length_mm() const {
     return length;
 }
 
+std::string CatheterSpec::driven_by(std::size_t i) const {
+    if (!segments.at(i).driven_by.empty()) return segments[i].driven_by;
+    if (i == 0) return "proximal";
+    return i + 1 == segments.size() ? "distal" : "none";
+}
+
 void validate(const CatheterSpec& spec, const SourcePlace& where) {
     require_range(where, "outer_diameter_mm", spec.outer_diameter_mm, 0.3, 10.0);
     require_range(where, "inner_diameter_mm", spec.inner_diameter_mm, 0.0, spec.outer_diameter_mm);
@@ -20,6 +26,9 @@ void validate(const CatheterSpec& spec, const SourcePlace& where) {
         require_range(where, key + "length_mm", segment.length_mm, 1.0, 300.0);
         require_range(where, key + "max_bend_deg", segment.max_bend_deg, 0.0, 180.0);
         require_range(where, key + "max_rate_deg_s", segment.max_rate_deg_s, 0.1, 1000.0);
+        const std::string& by = segment.driven_by;
+        if (!by.empty() && by != "proximal" && by != "distal" && by != "none")
+            throw UserError(where, key + "driven_by: found '" + by + "', allowed are proximal, distal, none");
     }
     require_range(where, "link_length_mm", spec.link_length_mm, 0.0, 100.0);
     require_range(where, "tip_length_mm", spec.tip_length_mm, 0.0, 100.0);

@@ -14,6 +14,8 @@ struct CatheterSegment {
     double length_mm = 0.0;       ///< along the centre-line, > 0
     double max_bend_deg = 0.0;    ///< largest angle between its two ends, 0 to 180
     double max_rate_deg_s = 0.0;  ///< fastest change of the bend vector (bend, direction), > 0
+    std::string driven_by = {};   ///< "proximal", "distal" or "none": the operator's bend that it follows; "" = by its
+                                  ///< place: the first follows proximal, the last one of several distal, no other any
 };
 
 /// A kinematic catheter: a shaft that follows the vessel, then segments joined by rigid links, then a straight tip.
@@ -39,6 +41,8 @@ struct CatheterSpec {
     double tip_marker_length_mm = 2.0;              ///< of that band, measured from the tip; at most tip_length_mm
     std::string source;
 
+    /// Which of the operator's bends segment i follows, with what its place says where it says nothing itself.
+    std::string driven_by(std::size_t i) const;
     double radius_mm() const { return 0.5 * outer_diameter_mm; }
     /// Segments, links and tip together, mm.
     double steerable_length_mm() const;

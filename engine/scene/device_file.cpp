@@ -62,7 +62,9 @@ Table<CatheterFile> make_catheter_table() {
             .required()
             .number("max_rate_deg_s", &CatheterSegment::max_rate_deg_s, "deg/s", {0.1, 10000},
                     "fastest change of the bend")
-            .required();
+            .required()
+            .choice("driven_by", &CatheterSegment::driven_by, {"", "proximal", "distal", "none"},
+                    "the operator's bend that it follows; empty = by its place: the first proximal, the last distal");
     const auto catheter =
         Table<CatheterSpec>("a steerable catheter")
             .text("name", &CatheterSpec::name, "its name")

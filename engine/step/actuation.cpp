@@ -27,15 +27,26 @@ ActuatedSegment segment_of(const CatheterSegment& spec, double radius_mm, double
     return out;
 }
 
-void put(const ActuatedSegment& segment, const ActionInfo& range, double& bend_deg, double& direction_deg) {
+void put(const ActuatedSegment& segment, double& bend_deg, double& direction_deg) {
     const double bend = std::sqrt(segment.bend_rad.squaredNorm());
-    bend_deg = std::clamp(bend / units::deg, range.minimum, range.maximum);
+    bend_deg = bend / units::deg;
     if (bend > 0.0) direction_deg = det::atan2(segment.bend_rad.y(), segment.bend_rad.x()) / units::deg;
 }
 
 }  // namespace
 
-void actuate(Parts& p, const EffectContext& context, Input& input) {
+SegmentBends commanded_bends(const CatheterSpec& spec, const Input& input) {
+    SegmentBends out;
+    for (std::size_t i = 0; i < spec.segments.size(); ++i) {
+        const std::string by = spec.driven_by(i);
+        const bool distal = by == "distal";
+        out.bend_deg.push_back(by == "none" ? 0.0 : distal ? input.distal_bend : input.proximal_bend);
+        out.direction_deg.push_back(by == "none" ? 0.0 : distal ? input.distal_direction : input.proximal_direction);
+    }
+    return out;
+}
+
+void actuate(Parts& p, const EffectContext& context, Input& input, SegmentBends& bends) {
     unsigned hooks = 0;
     for (const ActiveEffect* active : p.effects) hooks |= active->info->hooks;
     if (!p.catheter || (hooks & hook_actuation) == 0) return;
@@ -57,17 +68,13 @@ void actuate(Parts& p, const EffectContext& context, Input& input) {
         act.down = p.catheter_route->shape.base.orientation.conjugate() * (gravity / std::sqrt(gravity.squaredNorm()));
     const auto& segments = p.catheter->segments;
     const double radius = p.catheter->radius_mm();
-    if (!segments.empty())
-        act.segments.push_back(segment_of(segments[0], radius, input.proximal_bend, input.proximal_direction));
-    if (segments.size() > 1)
-        act.segments.push_back(segment_of(segments[1], radius, input.distal_bend, input.distal_direction));
+    for (std::size_t i = 0; i < segments.size(); ++i)
+        act.segments.push_back(segment_of(segments[i], radius, bends.bend_deg[i], bends.direction_deg[i]));
 
     p.each_effect(hook_actuation, [&](Effect& effect) { effect.actuation(context, act); });
 
-    if (!act.segments.empty())
-        put(act.segments[0], *find_action("proximal_bend"), input.proximal_bend, input.proximal_direction);
-    if (act.segments.size() > 1)
-        put(act.segments[1], *find_action("distal_bend"), input.distal_bend, input.distal_direction);
+    for (std::size_t i = 0; i < act.segments.size(); ++i)
+        put(act.segments[i], bends.bend_deg[i], bends.direction_deg[i]);
     // While the hand is on the other device the catheter's shaft is held at the sheath.
     if (!selected || dt <= 0.0) return;
     const ActionInfo& advance = *find_action("advance");

@@ -20,8 +20,16 @@ inline void visit(Archive& archive, CatheterTravel& travel) {
     archive.field("taken_rad", travel.taken_rad);
 }
 
+/// What is asked of every segment of the catheter, base first.
+struct SegmentBends {
+    std::vector<double> bend_deg, direction_deg;
+};
+
+/// The operator's two bends, on the segments that follow them (CatheterSpec::driven_by); the others stay straight.
+SegmentBends commanded_bends(const CatheterSpec& spec, const Input& input);
+
 /// Gives the command to the effects that stand between drive and catheter, and changes it into what they leave of it.
 /// Nothing happens in a world without one.
-void actuate(Parts& parts, const EffectContext& context, Input& input);
+void actuate(Parts& parts, const EffectContext& context, Input& input, SegmentBends& bends);
 
 }  // namespace cathlab

@@ -208,7 +208,7 @@ void settle_catheter(Parts& p) {
     p.catheter_route->shape = shape(*p.catheter, *p.catheter_state, p.catheter_route->laid);
 }
 
-double move_catheter(Parts& p, const Input& input, double h) {
+double move_catheter(Parts& p, const Input& input, const SegmentBends& bends, double h) {
     CatheterState& state = *p.catheter_state;
     CatheterRoute& route = *p.catheter_route;
     choose_route(p);
@@ -220,10 +220,10 @@ double move_catheter(Parts& p, const Input& input, double h) {
     const bool selected = input.device >= 0.5;
     command.advance_mm = selected ? input.advance * h : 0.0;
     command.rotate_rad = selected ? input.rotate * units::deg * h : 0.0;
-    command.bend_rad = {input.proximal_bend * units::deg, input.distal_bend * units::deg};
-    command.direction_rad = {input.proximal_direction * units::deg, input.distal_direction * units::deg};
-    command.bend_rad.resize(p.catheter->segments.size(), 0.0);
-    command.direction_rad.resize(p.catheter->segments.size(), 0.0);
+    for (std::size_t i = 0; i < p.catheter->segments.size(); ++i) {
+        command.bend_rad.push_back(bends.bend_deg[i] * units::deg);
+        command.direction_rad.push_back(bends.direction_deg[i] * units::deg);
+    }
 
     const double limit = route.insertion_limit_mm;
     WallAround around = wall_around(p, start);

@@ -3,12 +3,13 @@
 
 #include "contact/inside_catheter.h"
 #include "core/input.h"
+#include "step/actuation.h"
 #include "step/parts.h"
 
 namespace cathlab {
 
 /// Takes of the catheter's command what the wall allows and moves it.  Returns the refused part, 0 to 1.
-double move_catheter(Parts& parts, const Input& input, double h);
+double move_catheter(Parts& parts, const Input& input, const SegmentBends& bends, double h);
 
 /// Brings the rail and the catheter's shape to where the wall is now, without a command.
 void settle_catheter(Parts& parts);

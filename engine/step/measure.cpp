@@ -59,8 +59,10 @@ void measure_catheter(const Parts& p, const StepSums& sums, double n, Channels& 
     const CatheterState& state = *p.catheter_state;
     c.catheter_insertion_mm = state.insertion_mm;
     c.catheter_rotation_deg = state.rotation_rad / units::deg;
-    if (!state.bend_rad.empty()) c.catheter_proximal_bend_deg = state.bend_rad.front() / units::deg;
-    if (state.bend_rad.size() > 1) c.catheter_distal_bend_deg = state.bend_rad.back() / units::deg;
+    for (std::size_t i = state.bend_rad.size(); i-- > 0;)  // the first of several that follow proximal
+        if (p.catheter->driven_by(i) == "proximal") c.catheter_proximal_bend_deg = state.bend_rad[i] / units::deg;
+    for (std::size_t i = 0; i < state.bend_rad.size(); ++i)  // the last of several that follow distal
+        if (p.catheter->driven_by(i) == "distal") c.catheter_distal_bend_deg = state.bend_rad[i] / units::deg;
     put(c.catheter_tip_x_mm, c.catheter_tip_y_mm, c.catheter_tip_z_mm, p.catheter_route->shape.tip.position);
     measure_catheter_contact(sums, n, c);
     if (sums.catheter_refused > refused_part)

@@ -40,7 +40,9 @@ void step(World& world, const Input& wanted, Channels& channels) {
     parts.each_effect(hook_input, [&](Effect& effect) { effect.input(context, input); });
     input = clamped(parts, input);
     // [effects: actuation]  what drive, cables and shaft make of it
-    actuate(parts, context, input);
+    SegmentBends bends;
+    if (parts.catheter) bends = commanded_bends(*parts.catheter, input);
+    actuate(parts, context, input, bends);
 
     // [effects: drive]  where the supports and the heart go
     Drive drive;
@@ -56,8 +58,8 @@ void step(World& world, const Input& wanted, Channels& channels) {
     const double h = settings.dt / static_cast<double>(settings.substeps);
     for (int k = 0; k < settings.substeps; ++k) {
         const double s1 = static_cast<double>(k + 1) / static_cast<double>(settings.substeps);
-        substep(parts, input, drive, before, parts.supports->displacement, s1, t0 + static_cast<double>(k) * h, h,
-                sums);
+        substep(parts, input, bends, drive, before, parts.supports->displacement, s1, t0 + static_cast<double>(k) * h,
+                h, sums);
     }
 
     ++world.step_index;

@@ -173,8 +173,9 @@ void add_report(const Parts& p, const ContactReport& report, StepSums& sums) {
 
 }  // namespace
 
-void substep(Parts& p, const Input& input, const Drive& drive, std::span<const Vec3> support_before,
-             std::span<const Vec3> support_after, double s1, double time_s, double h, StepSums& sums) {
+void substep(Parts& p, const Input& input, const SegmentBends& bends, const Drive& drive,
+             std::span<const Vec3> support_before, std::span<const Vec3> support_after, double s1, double time_s,
+             double h, StepSums& sums) {
     const SoftBodyModel& wall = *p.wall;
     SoftBodyState& state = *p.wall_state;
     SoftBodyScratch& scratch = *p.wall_scratch;
@@ -186,7 +187,7 @@ void substep(Parts& p, const Input& input, const Drive& drive, std::span<const V
     CatheterShape catheter_before;
     if (p.catheter) {
         catheter_before = p.catheter_route->shape;
-        sums.catheter_refused = std::max(sums.catheter_refused, move_catheter(p, input, h));
+        sums.catheter_refused = std::max(sums.catheter_refused, move_catheter(p, input, bends, h));
     }
     p.stage("rod");
     if (p.wire) command_wire(p, input, h, sums);

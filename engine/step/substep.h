@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/input.h"
+#include "step/actuation.h"
 #include "step/parts.h"
 
 namespace cathlab {
@@ -27,7 +28,8 @@ struct StepSums {
 
 /// Advances everything by h.  `time_s`: at the beginning; `s0`, `s1`: the part of the step that the substep covers, 0
 /// to 1, along which the supports move from `support_before` to `support_after` (displacements of fixed particles, mm).
-void substep(Parts& parts, const Input& input, const Drive& drive, std::span<const Vec3> support_before,
-             std::span<const Vec3> support_after, double s1, double time_s, double h, StepSums& sums);
+void substep(Parts& parts, const Input& input, const SegmentBends& bends, const Drive& drive,
+             std::span<const Vec3> support_before, std::span<const Vec3> support_after, double s1, double time_s,
+             double h, StepSums& sums);
 
 }  // namespace cathlab

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "contrast/transport.h"
+#include "core/units.h"
+#include "scene/temporary_folder.h"
 #include "step/rig.h"
 
 namespace cathlab {
@@ -111,6 +113,42 @@ TEST(Channels, BendsAreTakenAsAsked) {
     run.step(input, 50);
     EXPECT_NEAR(run.channels.catheter_distal_bend_deg, 10.0, 1e-6);
     EXPECT_NEAR(run.channels.catheter_proximal_bend_deg, 0.0, 1e-6);
+}
+
+TEST(Channels, OfThreeSegmentsTheLastIsDistalOrAsTheFileSays) {
+    const auto device = [](const std::string& middle, const std::string& last) {
+        std::string text = "schema = 1\nkind = \"catheter\"\nname = \"three\"\nlink_length_mm = 2.0\n";
+        const std::string by[] = {"", middle, last};
+        for (int i = 0; i < 3; ++i) {
+            text += "[[segments]]\nname = \"s" + std::to_string(i) + "\"\nlength_mm = 12.0\nmax_rate_deg_s = 60.0\n";
+            text += "max_bend_deg = " + std::to_string(20 + 10 * i) + ".0\n";
+            if (!by[i].empty()) text += "driven_by = \"" + by[i] + "\"\n";
+        }
+        return text;
+    };
+    const TemporaryFolder folder;
+    struct Case {
+        std::string middle, last;
+        std::array<double, 3> bend_deg;
+    };
+    for (const Case& c : {Case{"", "", {10.0, 0.0, 35.0}}, Case{"distal", "", {10.0, 30.0, 35.0}},
+                          Case{"proximal", "none", {10.0, 10.0, 0.0}}}) {
+        SceneSpec spec = rig_spec("tube_catheter");
+        spec.catheter.device = folder.write("three.toml", device(c.middle, c.last));
+        RigRun run(spec, "tube_catheter");
+        Input input;
+        input.proximal_bend = 10.0;
+        input.distal_bend = 35.0;
+        run.step(input, 100);
+        for (std::size_t i = 0; i < 3; ++i)
+            EXPECT_NEAR(run.parts.catheter_state->bend_rad[i] / units::deg, c.bend_deg[i], 0.1)
+                << i << c.middle << c.last;
+        EXPECT_NEAR(run.channels.catheter_proximal_bend_deg, 10.0, 0.1);
+        EXPECT_NEAR(run.channels.catheter_distal_bend_deg, c.last == "none" ? 0.0 : 35.0, 0.1);
+    }
+    SceneSpec spec = rig_spec("tube_catheter");
+    spec.catheter.device = folder.write("three.toml", device("sideways", ""));
+    EXPECT_THROW(build_world(spec, rig_models("tube_catheter"), 1, 1), UserError);
 }
 
 TEST(Channels, TheBeamCountsPedalTimeAndDoseGrowsOnlyThen) {
