@@ -99,6 +99,7 @@ ClusterGroups<Real> pack(const Membership& lanes, const SoftBodyModel& model) {
     packed.place.assign(slots * n, 0);
     packed.member.assign(slots * 4 * n, Real(0));
     packed.rest_centroid.assign(groups * 3 * n, 0.0);
+    packed.rotation_unit = model.goals.rotation_unit;
     const auto weight = [&](Index i) {
         return model.mass[at(i)] / (model.cluster_start[at(i) + 1] - model.cluster_start[at(i)]);
     };
@@ -134,8 +135,15 @@ ClusterGroups<Real> pack(const Membership& lanes, const SoftBodyModel& model) {
 }
 
 GoalSources goal_sources(const SoftBodyModel& model) {
-    constexpr std::size_t bytes = kernel::transform_doubles * sizeof(double), four = 4;
+    constexpr std::size_t four = 4;
+    const std::size_t bytes =
+        kernel::transform_numbers * (model.precision == Precision::double_ ? sizeof(double) : sizeof(std::int32_t));
     GoalSources goals;
+    Index most = 1;
+    for (std::size_t i = 0; i < model.size(); ++i)
+        most = std::max(most, model.cluster_start[i + 1] - model.cluster_start[i]);
+    goals.rotation_unit = kernel::rotation_room;
+    for (Index room = 1; room < most; room *= 2) goals.rotation_unit /= 2.0;
     goals.first.reserve(model.size() + 1);
     goals.share.reserve(model.size());
     goals.from.reserve(model.membership_count() + (four - 1) * model.size());

@@ -9,7 +9,7 @@ ELASTIC_INLINE void all_lanes(double value, Block& to) { to = Block{} + value; }
 ELASTIC_INLINE void lanes_at(const double* from, Block& to) { __builtin_memcpy(&to, from, sizeof to); }
 ELASTIC_INLINE void put_lanes(const Block& from, double* to) { __builtin_memcpy(to, &from, sizeof from); }
 ELASTIC_INLINE void vector_at(const double* from, const std::int32_t* place, Vector& to) {
-    places(from, place, to.x, to.y, to.z);
+    places_double(from, place, to.x, to.y, to.z);
 }
 
 // ln x for normal x > 0, to 2 ulp: x = m 2^e with m near 1, ln m = 2 artanh((m - 1) / (m + 1)).

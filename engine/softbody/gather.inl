@@ -1,18 +1,18 @@
-// The gather of goals, included once an instruction set, as kernel.inl is: GATHER its name.
+// The gather of goals from transforms in double, included once an instruction set, as kernel.inl is.
 // A transform's twelve numbers are added side by side, so their order of summation does not depend on the width.
-#define ADD_TRANSFORM(x, y, z, offset)                                             \
-    {                                                                              \
-        const char* column = reinterpret_cast<const char*>(transform) + (offset);  \
-        Column in_x, in_y, in_z; /* an array would go through memory */            \
-        __builtin_memcpy(&in_x, column, sizeof in_x);                              \
-        __builtin_memcpy(&in_y, column + sizeof in_x, sizeof in_y);                \
-        __builtin_memcpy(&in_z, column + 2 * sizeof in_x, sizeof in_z);            \
-        (x) += in_x;                                                               \
-        (y) += in_y;                                                               \
-        (z) += in_z;                                                               \
+#define ADD_TRANSFORM(x, y, z, offset)                                       \
+    {                                                                        \
+        const char* column = static_cast<const char*>(transform) + (offset); \
+        Column in_x, in_y, in_z; /* an array would go through memory */      \
+        __builtin_memcpy(&in_x, column, sizeof in_x);                        \
+        __builtin_memcpy(&in_y, column + sizeof in_x, sizeof in_y);          \
+        __builtin_memcpy(&in_z, column + 2 * sizeof in_x, sizeof in_z);      \
+        (x) += in_x;                                                         \
+        (y) += in_y;                                                         \
+        (z) += in_z;                                                         \
     }
-TARGET static void GATHER(const Goals& goals, const double* transform, const double* rest, double* goal,
-                          std::size_t begin, std::size_t end) {
+TARGET static void gather_double(const Goals& goals, const void* transform, const double* rest, const double*,
+                                 double* goal, std::size_t begin, std::size_t end) {
     using Column = double __attribute__((vector_size(4 * sizeof(double))));
     const std::int32_t *const all = goals.from, *const first = goals.first;
     const double* const share = goals.share;

@@ -8,9 +8,20 @@
 namespace cathlab::kernel {
 
 inline constexpr std::size_t lanes = 8;  ///< clusters in a group
-inline constexpr std::size_t transform_doubles =
+inline constexpr std::size_t transform_numbers =
     12;                                  ///< of a cluster: column k of R, then t_k, three times; goal = R X + t
 inline constexpr int polar_rounds = 24;  ///< at most; a warm start ends after two or three
+
+// Fits in float look at places, and say where they take them, in whole steps of a grid.  Eight such numbers fill a
+// vector that holds four doubles, they are added without rounding and in any order, and a nanometre is far below what a
+// float tells apart at 500 mm.  They count modulo 2^32, 4096 mm: only differences are ever wanted, of particles of one
+// cluster or of a goal and its particle.
+inline constexpr double grid_mm = 0x1p-20;
+inline constexpr double grid_turn_mm = 0x1p32 * grid_mm;
+/// Added to a number of less than 2^31 mm, it leaves the steps in the lowest 32 bits of the sum.
+inline constexpr double grid_magic = 0x1.8p52 * grid_mm;
+/// What the whole numbers of so many rotations may add up to: rotation_unit = rotation_room / their number.
+inline constexpr double rotation_room = 0x1p30;
 
 /// ClusterGroups (softbody/model.h) without its vectors.
 template <class Real>
@@ -19,21 +30,33 @@ struct Groups {
     const std::int32_t* place;
     const Real* member;
     const double* rest_centroid;
+    double rotation_unit;  ///< of the fits in float: what 1 stands for in the whole numbers of a transform's R
 };
 
-/// Fits groups [begin, end) to positions x (n x 3): per cluster the centroid x_c, the covariance A = sum w (x - x_c)
+/// steps = numbers in steps of the grid, for numbers [begin, end).
+using ToGrid = void (*)(const double* numbers, std::int32_t* steps, std::size_t begin, std::size_t end);
+/// Positions (n x 3) as double and, for fits in float, in steps of the grid (n x 3 and one that is read and not used).
+struct Positions {
+    const double* x;
+    const std::int32_t* grid;
+};
+/// Fits groups [begin, end) to positions: per cluster the centroid x_c, the covariance A = sum w (x - x_c)
 /// X^T, its rotation R by iteration from the last one (rotation: groups x {w, x, y, z} x 8, in and out), and transform
-/// = (R, x_c - R X_c).
-using Fit = void (*)(const void* groups, const double* x, double* rotation, double* transform, std::size_t begin,
-                     std::size_t end);
+/// = (R, x_c - R X_c): doubles, or whole numbers where fits are in float.  far: per group whether a sum of whole t of
+/// its clusters may have gone round; may be null for doubles.
+using Fit = void (*)(const void* groups, const Positions& positions, double* rotation, void* transform,
+                     std::uint8_t* far, std::size_t begin, std::size_t end);
 /// GoalSources (softbody/model.h) without its vectors.
 struct Goals {
     const std::int32_t* first;
     const std::int32_t* from;
     const double* share;
+    double rotation_unit;  ///< as in Groups
 };
-/// goal_i = mean over its clusters of R X_i + t for particles [begin, end).
-using Gather = void (*)(const Goals& goals, const double* transform, const double* rest, double* goal,
+/// goal_i = mean over its clusters of R X_i + t for particles [begin, end).  x: where they are where sums of whole t
+/// may have gone round, else null; a goal is then the one of those 4096 mm over its clusters' number apart that is
+/// nearest.
+using Gather = void (*)(const Goals& goals, const void* transform, const double* rest, const double* x, double* goal,
                         std::size_t begin, std::size_t end);
 /// What a walk over the particles reads and writes (n, or n x 3); what the model does not have is null.
 struct Particles {
@@ -80,7 +103,9 @@ struct Set {
     const char* name;
     Fit fit_double;  ///< groups: Groups<double>
     Fit fit_float;   ///< groups: Groups<float>
-    Gather gather;
+    Gather gather_double;
+    Gather gather_float;
+    ToGrid to_grid;
     Walk predict;  ///< solver.h says what each of the three does
     Walk apply;
     Walk finish;
@@ -93,6 +118,6 @@ struct Set {
 /// The widest set that this processor has.
 const Set& best();
 const Set& baseline();  ///< SSE2
-const Set* avx2();      ///< null where the processor lacks it
+const Set* avx2();      ///< null where the processor lacks it, or FMA
 
 }  // namespace cathlab::kernel

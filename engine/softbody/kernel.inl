@@ -3,27 +3,15 @@
 //   WIDTH       lanes of a vector, 2, 4 or 8
 //   NAMED(x)    x with the suffix of this copy
 //   TARGET      the function attribute that selects the instructions
-//   JOINED      1 where a vector is made of two blocks of doubles (float), 0 where it is one
-// Plain arrays and compiler vectors only: an inline function of a library, compiled here for a newer processor, could be the
-// copy that the linker keeps for everybody.
+//   ADD_PRODUCT(a, b, c)  a b + c, rounded as the instruction set's own number type wants it (kernel_copies.inl)
+//   ON_GRID     1 where positions and transforms are whole steps of the grid (float), 0 where they are doubles
+// Plain arrays and compiler vectors only: an inline function of a library, compiled here for a newer processor, could
+// be the copy that the linker keeps for everybody.
 
 using NAMED(V) = REAL __attribute__((vector_size(WIDTH * sizeof(REAL))));
 
-TARGET static inline void NAMED(load)(const REAL* from, NAMED(V) & to) { __builtin_memcpy(&to, from, sizeof to); }
-
-// The vector of one axis from blocks of doubles.
-TARGET static inline void NAMED(join)(const Block (*now)[3], std::size_t axis, NAMED(V) & to) {
-#if JOINED
-    using Part = REAL __attribute__((vector_size(BLOCK * sizeof(REAL))));
-    const Part low = __builtin_convertvector(now[0][axis], Part), high = __builtin_convertvector(now[1][axis], Part);
-#if BLOCK == 2
-    to = __builtin_shufflevector(low, high, 0, 1, 2, 3);
-#else
-    to = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-#endif
-#else
-    to = now[0][axis];
-#endif
+TARGET static inline void NAMED(load)(const REAL* from, NAMED(V) & to) {
+    __builtin_memcpy(&to, from, sizeof to);
 }
 
 // R of the quaternion q, whatever its length: r[3 * row + column].
@@ -43,14 +31,16 @@ TARGET static inline void NAMED(matrix_of)(const NAMED(V) * q, NAMED(V) * r) {
     r[8] = REAL(1) - (xx + yy);
 }
 
-// The rotation R that maximises trace(R^T A), by iteration from q.  With M = R^T A and S its symmetric part, the turn d (in
-// the frame of R) that is still missing obeys  (trace(S) 1 - S) d = axial(M)  to second order: Newton's step, taken where that
-// matrix is positive definite.  Elsewhere (far away, inverted, flat, collinear, zero) the step is the one of Mueller et al. 2016,
-// eq. 7, axial(M) over |trace|, which never fails.  A lane that has arrived is left alone, so it does not feel its neighbours.
+// The rotation R that maximises trace(R^T A), by iteration from q.  With M = R^T A and S its symmetric part, the turn d
+// (in the frame of R) that is still missing obeys  (trace(S) 1 - S) d = axial(M)  to second order: Newton's step, taken
+// where that matrix is positive definite.  Elsewhere (far away, inverted, flat, collinear, zero) the step is the one of
+// Mueller et al. 2016, eq. 7, axial(M) over |trace|, which never fails.  A lane that has arrived is left alone, so it
+// does not feel its neighbours.
 TARGET static inline void NAMED(polar)(const NAMED(V) * a, NAMED(V) * q) {
     const REAL tiny = sizeof(REAL) == 8 ? REAL(1e-290) : REAL(1e-36);
     const REAL slack = sizeof(REAL) == 8 ? REAL(1e-10) : REAL(1e-5);
-    const REAL arrived = sizeof(REAL) == 8 ? REAL(1e-14) : REAL(1e-8);  // square of the last turn; the error is its square
+    const REAL arrived =
+        sizeof(REAL) == 8 ? REAL(1e-14) : REAL(1e-8);  // square of the last turn; the error is its square
     const NAMED(V) zero = {}, one = zero + REAL(1);
     auto done = zero > one;
     // Covariances are scaled to a largest entry of 1, lest their cubes leave the range of a float.
@@ -68,7 +58,8 @@ TARGET static inline void NAMED(polar)(const NAMED(V) * a, NAMED(V) * q) {
             for (int j = 0; j < 3; ++j) m[3 * i + j] = r[i] * b[j] + r[3 + i] * b[3 + j] + r[6 + i] * b[6 + j];
         const NAMED(V) ax = m[7] - m[5], ay = m[2] - m[6], az = m[3] - m[1];
         const NAMED(V) trace = m[0] + m[4] + m[8];
-        const NAMED(V) bxy = REAL(-0.5) * (m[1] + m[3]), bxz = REAL(-0.5) * (m[2] + m[6]), byz = REAL(-0.5) * (m[5] + m[7]);
+        const NAMED(V) bxy = REAL(-0.5) * (m[1] + m[3]), bxz = REAL(-0.5) * (m[2] + m[6]),
+                       byz = REAL(-0.5) * (m[5] + m[7]);
         const NAMED(V) bxx = m[4] + m[8] + slack, byy = m[0] + m[8] + slack, bzz = m[0] + m[4] + slack;
         const NAMED(V) cxx = byy * bzz - byz * byz, cxy = bxz * byz - bxy * bzz, cxz = bxy * byz - bxz * byy;
         const NAMED(V) cyy = bxx * bzz - bxz * bxz, cyz = bxy * bxz - bxx * byz, czz = bxx * byy - bxy * bxy;
@@ -101,17 +92,104 @@ TARGET static inline void NAMED(polar)(const NAMED(V) * a, NAMED(V) * q) {
     }
 }
 
-TARGET static void NAMED(fit)(const void* groups, const double* x, double* rotation, double* transform,
-                              std::size_t begin, std::size_t end) {
+#if ON_GRID
+using NAMED(Coordinate) = std::int32_t __attribute__((vector_size(WIDTH * sizeof(std::int32_t))));
+
+// Places of WIDTH particles, one a lane.  All three numbers of a particle come in one load, and the next one's first.
+TARGET static inline void NAMED(places)(const std::int32_t* from, const std::int32_t* place, NAMED(Coordinate) & x,
+                                        NAMED(Coordinate) & y, NAMED(Coordinate) & z) {
+    using Four = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
+    Four of[WIDTH];
+    for (int l = 0; l < WIDTH; ++l) __builtin_memcpy(&of[l], from + place[l], sizeof(Four));
+#if WIDTH == 4
+    const Four low_a = __builtin_shufflevector(of[0], of[1], 0, 4, 1, 5);
+    const Four low_b = __builtin_shufflevector(of[2], of[3], 0, 4, 1, 5);
+    x = __builtin_shufflevector(low_a, low_b, 0, 1, 4, 5);
+    y = __builtin_shufflevector(low_a, low_b, 2, 3, 6, 7);
+    z = __builtin_shufflevector(__builtin_shufflevector(of[0], of[1], 2, 6, 3, 7),
+                                __builtin_shufflevector(of[2], of[3], 2, 6, 3, 7), 0, 1, 4, 5);
+#else
+    using Eight = NAMED(Coordinate);
+    const Eight a = __builtin_shufflevector(of[0], of[4], 0, 1, 2, 3, 4, 5, 6, 7);
+    const Eight b = __builtin_shufflevector(of[1], of[5], 0, 1, 2, 3, 4, 5, 6, 7);
+    const Eight c = __builtin_shufflevector(of[2], of[6], 0, 1, 2, 3, 4, 5, 6, 7);
+    const Eight d = __builtin_shufflevector(of[3], of[7], 0, 1, 2, 3, 4, 5, 6, 7);
+    const Eight low_ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+    const Eight low_cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
+    const Eight high_ab = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+    const Eight high_cd = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+    x = __builtin_shufflevector(low_ab, low_cd, 0, 1, 8, 9, 4, 5, 12, 13);
+    y = __builtin_shufflevector(low_ab, low_cd, 2, 3, 10, 11, 6, 7, 14, 15);
+    z = __builtin_shufflevector(high_ab, high_cd, 0, 1, 8, 9, 4, 5, 12, 13);
+#endif
+}
+
+// In steps of the grid; their difference is taken modulo 2^32, so nothing is lost where the count turns over.
+TARGET static inline NAMED(V) NAMED(length)(NAMED(Coordinate) steps) {
+    return __builtin_convertvector(steps, NAMED(V));
+}
+
+// R in whole parts of the unit, t in steps of the grid.  t is the one of the R that stands there, rounded as it is.
+// Whether a sum of as many t as R's unit leaves room for could go round.
+TARGET static inline bool NAMED(put_transform)(const Groups<REAL>& view, const NAMED(V) * r, const NAMED(V) * c,
+                                               std::size_t l, const double* origin, const double* rest, void* transform,
+                                               std::size_t lane) {
+    std::int32_t* out = static_cast<std::int32_t*>(transform) + lane * transform_numbers;
+    const auto unit = static_cast<REAL>(view.rotation_unit);
+    const double part = 1.0 / view.rotation_unit;
+    const double surely = 0.5 * grid_turn_mm * view.rotation_unit / rotation_room;
+    bool far = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+        double turned = 0.0;
+        for (std::size_t j = 0; j < 3; ++j) {
+            out[4 * j + k] = static_cast<std::int32_t>(unit * r[3 * k + j][l]);
+            turned += static_cast<double>(out[4 * j + k]) * rest[j * lanes];
+        }
+        const double on_grid = (origin[k] + grid_magic) - grid_magic;
+        const double moved = (on_grid + grid_mm * static_cast<double>(c[k][l])) - part * turned,
+                     sum = moved + grid_magic;
+        far |= !(moved < surely && moved > -surely);
+        __builtin_memcpy(&out[4 * k + 3], &sum, sizeof(std::int32_t));
+    }
+    return far;
+}
+#else
+using NAMED(Coordinate) = NAMED(V);
+
+TARGET static inline NAMED(V) NAMED(length)(NAMED(Coordinate) difference) {
+    return difference;
+}
+
+TARGET static inline bool NAMED(put_transform)(const Groups<REAL>&, const NAMED(V) * r, const NAMED(V) * c,
+                                               std::size_t l, const double* origin, const double* rest, void* transform,
+                                               std::size_t lane) {
+    double* out = static_cast<double*>(transform) + lane * transform_numbers;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double r0 = r[3 * k][l], r1 = r[3 * k + 1][l], r2 = r[3 * k + 2][l];
+        out[k] = r0;
+        out[4 + k] = r1;
+        out[8 + k] = r2;
+        out[4 * k + 3] = (origin[k] + c[k][l]) - (r0 * rest[0] + r1 * rest[lanes] + r2 * rest[2 * lanes]);
+    }
+    return false;
+}
+#endif
+
+TARGET static void NAMED(fit)(const void* groups, const Positions& positions, double* rotation, void* transform,
+                              std::uint8_t* far, std::size_t begin, std::size_t end) {
     const Groups<REAL>& view = *static_cast<const Groups<REAL>*>(groups);
+#if ON_GRID
+    const std::int32_t* const x = positions.grid;
+#else
+    const double* const x = positions.x;
+#endif
     for (std::size_t g = begin; g < end; ++g) {
+        bool leads_far = false;
         const auto first = static_cast<std::size_t>(view.first_slot[g]);
         const auto last = static_cast<std::size_t>(view.first_slot[g + 1]);
         for (std::size_t half = 0; half < lanes; half += WIDTH) {
-            constexpr std::size_t blocks = WIDTH / BLOCK;
-            Block origin[blocks][3];
-            for (std::size_t k = 0; k < blocks; ++k)
-                places(x, view.place + first * lanes + half + k * BLOCK, origin[k][0], origin[k][1], origin[k][2]);
+            NAMED(Coordinate) ox, oy, oz;
+            NAMED(places)(x, view.place + first * lanes + half, ox, oy, oz);
             // Twelve sums by name: as arrays they would be kept in memory.
             NAMED(V) cx = {}, cy = {}, cz = {};
             NAMED(V) axx = {}, axy = {}, axz = {}, ayx = {}, ayy = {}, ayz = {}, azx = {}, azy = {}, azz = {};
@@ -121,32 +199,28 @@ TARGET static void NAMED(fit)(const void* groups, const double* x, double* rotat
                 __asm__("" : "+r"(place));
                 const REAL* member = view.member + slot * 4 * lanes + half;
                 NAMED(V) dx, dy, dz, m;
-                Block now[blocks][3];
-                for (std::size_t k = 0; k < blocks; ++k) {
-                    places(x, place + k * BLOCK, now[k][0], now[k][1], now[k][2]);
-                    for (std::size_t axis = 0; axis < 3; ++axis) now[k][axis] -= origin[k][axis];
-                }
-                // Differences are taken in double, then rounded: a float could not tell places at 500 mm well enough apart.
-                NAMED(join)(now, 0, dx);
-                NAMED(join)(now, 1, dy);
-                NAMED(join)(now, 2, dz);
+                NAMED(Coordinate) nx, ny, nz;
+                NAMED(places)(x, place, nx, ny, nz);
+                dx = NAMED(length)(nx - ox);
+                dy = NAMED(length)(ny - oy);
+                dz = NAMED(length)(nz - oz);
                 // Number by number of the member: so it is loaded once and then forgotten.
                 NAMED(load)(member + 3 * lanes, m);
-                cx += m * dx;
-                cy += m * dy;
-                cz += m * dz;
+                cx = ADD_PRODUCT(m, dx, cx);
+                cy = ADD_PRODUCT(m, dy, cy);
+                cz = ADD_PRODUCT(m, dz, cz);
                 NAMED(load)(member, m);
-                axx += dx * m;
-                ayx += dy * m;
-                azx += dz * m;
+                axx = ADD_PRODUCT(dx, m, axx);
+                ayx = ADD_PRODUCT(dy, m, ayx);
+                azx = ADD_PRODUCT(dz, m, azx);
                 NAMED(load)(member + lanes, m);
-                axy += dx * m;
-                ayy += dy * m;
-                azy += dz * m;
+                axy = ADD_PRODUCT(dx, m, axy);
+                ayy = ADD_PRODUCT(dy, m, ayy);
+                azy = ADD_PRODUCT(dz, m, azy);
                 NAMED(load)(member + 2 * lanes, m);
-                axz += dx * m;
-                ayz += dy * m;
-                azz += dz * m;
+                axz = ADD_PRODUCT(dx, m, axz);
+                ayz = ADD_PRODUCT(dy, m, ayz);
+                azz = ADD_PRODUCT(dz, m, azz);
             }
             const NAMED(V) c[3] = {cx, cy, cz}, a[9] = {axx, axy, axz, ayx, ayy, ayz, azx, azy, azz};
             NAMED(V) q[4], r[9];
@@ -157,18 +231,13 @@ TARGET static void NAMED(fit)(const void* groups, const double* x, double* rotat
             NAMED(matrix_of)(q, r);
             for (std::size_t l = 0; l < WIDTH; ++l) {
                 for (std::size_t k = 0; k < 4; ++k) turn[k * lanes + l] = static_cast<double>(q[k][l]);
-                double* out = transform + (g * lanes + (half + l)) * transform_doubles;
+                const std::size_t lane = g * lanes + (half + l);
                 const double* rest = view.rest_centroid + g * 3 * lanes + half + l;
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const double r0 = r[3 * k][l], r1 = r[3 * k + 1][l], r2 = r[3 * k + 2][l];
-                    out[k] = r0;
-                    out[4 + k] = r1;
-                    out[8 + k] = r2;
-                    out[4 * k + 3] = (origin[l / BLOCK][k][l % BLOCK] + static_cast<double>(c[k][l])) -
-                                 (r0 * rest[0] + r1 * rest[lanes] + r2 * rest[2 * lanes]);
-                }
+                const double* origin = positions.x + view.place[first * lanes + half + l];
+                leads_far |= NAMED(put_transform)(view, r, c, l, origin, rest, transform, lane);
             }
         }
+        if (far) far[g] = leads_far;
     }
 }
 

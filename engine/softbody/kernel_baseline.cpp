@@ -5,14 +5,15 @@ namespace cathlab::kernel {
 namespace {
 #define TARGET
 #define BLOCK 2
+#define HAS_FMA 0
 #define FLOATS 4
 #include "softbody/kernel_copies.inl"
 }  // namespace
 
 const Set& baseline() {
-    static const Set set{"SSE2",          fit_double,       fit_float,    gather_goals, predict_particles,
-                         apply_particles, finish_particles, shell_forces, shell_goals,  polar_of_double,
-                         polar_of_float};
+    static const Set set{"SSE2",      fit_double,        fit_float,       gather_double,    gather_float,
+                         to_grid,     predict_particles, apply_particles, finish_particles, shell_forces,
+                         shell_goals, polar_of_double,   polar_of_float};
     return set;
 }
 

@@ -72,9 +72,12 @@ struct ClusterGroups {
     AlignedVector<std::int32_t> place;     ///< (slots x 8) index of a particle's x among the coordinates
     AlignedVector<Real> member;  ///< (slots x 4 x 8): w (X - X_c) in x, y, z [kg mm] over cluster weight, w over it
     std::vector<double> rest_centroid;  ///< (groups x 3 x 8) mm
+    double rotation_unit = 0.0;         ///< of GoalSources
 
     std::size_t groups() const { return first_slot.empty() ? 0 : first_slot.size() - 1; }
-    kernel::Groups<Real> view() const { return {first_slot.data(), place.data(), member.data(), rest_centroid.data()}; }
+    kernel::Groups<Real> view() const {
+        return {first_slot.data(), place.data(), member.data(), rest_centroid.data(), rotation_unit};
+    }
 };
 
 /// Whose transforms make a particle's goal: from[first[i] .. first[i + 1]), a multiple of four of them.
@@ -82,8 +85,9 @@ struct GoalSources {
     std::vector<std::int32_t> first;  ///< (n + 1)
     std::vector<std::int32_t> from;   ///< in bytes; an empty lane's, which is zero, fills up the four
     std::vector<double> share;        ///< (n) one over the number of clusters
+    double rotation_unit = 0.0;  ///< fits in float: 1 in the whole numbers of R, as large as their sums leave room for
 
-    kernel::Goals view() const { return {first.data(), from.data(), share.data()}; }
+    kernel::Goals view() const { return {first.data(), from.data(), share.data(), rotation_unit}; }
 };
 
 /// A part of the wall that no fixed particle holds and no cluster ties to another: it keeps its momentum exactly.

@@ -1,6 +1,7 @@
 #include "softbody/observe.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/check.h"
 
@@ -11,6 +12,29 @@ double kinetic_energy(const SoftBodyModel& model, const SoftBodyState& state) {
     for (std::size_t i = 0; i < model.size(); ++i) sum += 0.5 * model.mass[i] * state.v[i].squaredNorm();
     return sum;
 }
+
+namespace {
+
+/// x less the goal that a cluster has for the particle that rests at X, mm.
+Vec3 off_goal(const SoftBodyModel& model, const SoftBodyScratch& scratch, std::size_t cluster, const Vec3& rest,
+              const Vec3& x) {
+    const std::size_t first = cluster * kernel::transform_numbers;
+    if (model.precision == Precision::double_) {
+        const double* t = scratch.transform.data() + first;
+        return x - Eigen::Map<const Mat3, 0, Eigen::OuterStride<4>>(t) * rest -
+               Eigen::Map<const Vec3, 0, Eigen::InnerStride<4>>(t + 3);
+    }
+    const std::int32_t* t = scratch.grid_transform.data() + first;
+    Vec3 off = x;
+    for (Index k = 0; k < 3; ++k) {
+        for (Index j = 0; j < 3; ++j) off[k] -= t[4 * j + k] / model.goals.rotation_unit * rest[j];
+        off[k] -= kernel::grid_mm * t[4 * k + 3];
+        off[k] -= kernel::grid_turn_mm * std::round(off[k] / kernel::grid_turn_mm);
+    }
+    return off;
+}
+
+}  // namespace
 
 double elastic_energy(const SoftBodyModel& model, const SoftBodyState& state, const SoftBodyScratch& scratch) {
     if (model.form == WallForm::elastic) {
@@ -23,13 +47,9 @@ double elastic_energy(const SoftBodyModel& model, const SoftBodyState& state, co
         const auto begin = static_cast<std::size_t>(model.cluster_start[i]);
         const auto end = static_cast<std::size_t>(model.cluster_start[i + 1]);
         double squares = 0.0;
-        for (std::size_t m = begin; m < end; ++m) {
-            const double* t =
-                scratch.transform.data() + static_cast<std::size_t>(model.cluster[m]) * kernel::transform_doubles;
-            const Eigen::Map<const Mat3, 0, Eigen::OuterStride<4>> rotation(t);
-            const Eigen::Map<const Vec3, 0, Eigen::InnerStride<4>> translation(t + 3);
-            squares += (state.x[i] - rotation * model.rest[i] - translation).squaredNorm();
-        }
+        for (std::size_t m = begin; m < end; ++m)
+            squares += off_goal(model, scratch, static_cast<std::size_t>(model.cluster[m]), model.rest[i], state.x[i])
+                           .squaredNorm();
         sum += 0.5 * scale * model.stiffness[i] * squares / static_cast<double>(end - begin);
     }
     return sum;

@@ -41,8 +41,12 @@ public:
 
     void fit(const kernel::Set& set, SoftBodyState& state, SoftBodyScratch& scratch, std::size_t begin,
              std::size_t end) const {
-        (wide_ ? set.fit_double : set.fit_float)(wide_ ? static_cast<const void*>(&double_) : &float_, numbers(state.x),
-                                                 state.rotation.data(), scratch.transform.data(), begin, end);
+        const kernel::Positions now{numbers(state.x), scratch.grid.data()};
+        if (wide_)
+            set.fit_double(&double_, now, state.rotation.data(), scratch.transform.data(), nullptr, begin, end);
+        else
+            set.fit_float(&float_, now, state.rotation.data(), scratch.grid_transform.data(), scratch.far.data(), begin,
+                          end);
     }
     /// Places of a group's particles, with repeats.
     std::span<const std::int32_t> places(std::size_t group) const {
@@ -58,10 +62,33 @@ private:
     kernel::Groups<float> float_;
 };
 
+/// Positions of particles [begin, end) in steps of the grid.
+void to_grid(const SoftBodyState& state, SoftBodyScratch& scratch, const kernel::Set& set, std::size_t begin,
+             std::size_t end) {
+    set.to_grid(numbers(state.x), scratch.grid.data(), 3 * begin, 3 * end);
+}
+
+/// Where fits are in float, all positions in steps of the grid.
+void all_to_grid(const SoftBodyModel& model, const SoftBodyState& state, SoftBodyScratch& scratch,
+                 const Workers& workers) {
+    if (model.precision == Precision::double_) return;
+    scratch.grid.resize(3 * model.size() + 1);
+    workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
+        to_grid(state, scratch, kernel::best(), begin, end);
+    });
+}
+
+/// Fits all clusters to state.x; the grid has its places already.
 void fit_all(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
     const kernel::Set& set = kernel::best();
-    scratch.transform.resize((model.empty_lane() + 1) * kernel::transform_doubles);
-    std::fill_n(scratch.transform.end() - kernel::transform_doubles, kernel::transform_doubles, 0.0);
+    const auto empty_last = [&](auto& transform) {
+        transform.resize((model.empty_lane() + 1) * kernel::transform_numbers);
+        std::fill_n(transform.end() - kernel::transform_numbers, kernel::transform_numbers, 0);
+    };
+    if (model.precision == Precision::double_)
+        empty_last(scratch.transform);
+    else
+        empty_last(scratch.grid_transform), scratch.far.resize(model.group_count());
     scratch.goal.resize(model.size());
     const Clusters clusters(model);
     workers.for_ranges(model.group_count(), group_grain,
@@ -69,9 +96,13 @@ void fit_all(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& 
 }
 
 /// Goals of particles [begin, end) from the clusters as they are fitted.
-void gather(const SoftBodyModel& model, SoftBodyScratch& scratch, const kernel::Set& set, std::size_t begin,
-            std::size_t end) {
-    set.gather(model.goals.view(), scratch.transform.data(), numbers(model.rest), numbers(scratch.goal), begin, end);
+void gather(const SoftBodyModel& model, const SoftBodyState& state, SoftBodyScratch& scratch, const kernel::Set& set,
+            std::size_t begin, std::size_t end) {
+    const bool wide = model.precision == Precision::double_;
+    const void* transform = wide ? static_cast<const void*>(scratch.transform.data()) : scratch.grid_transform.data();
+    const bool far = !wide && std::find(scratch.far.begin(), scratch.far.end(), 1) != scratch.far.end();
+    (wide ? set.gather_double : set.gather_float)(model.goals.view(), transform, numbers(model.rest),
+                                                  far ? numbers(state.x) : nullptr, numbers(scratch.goal), begin, end);
 }
 
 bool elastic(const SoftBodyModel& model) {
@@ -101,10 +132,12 @@ void pull_all(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch&
 
 /// Fits the clusters, or has the shell pull, as state.x is.
 void prepare_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
-    if (elastic(model))
+    if (elastic(model)) {
         pull_all(model, state, scratch, workers);
-    else
+    } else {
+        all_to_grid(model, state, scratch, workers);
         fit_all(model, state, scratch, workers);
+    }
 }
 
 /// Goals of particles [begin, end): of the clusters as they are fitted, or of the shell as it pulls.
@@ -113,7 +146,7 @@ void find_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratc
     if (elastic(model))
         shell_goals(model, state, scratch, begin, end);
     else
-        gather(model, scratch, set, begin, end);
+        gather(model, state, scratch, set, begin, end);
 }
 
 kernel::Particles particles(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h) {
@@ -299,20 +332,29 @@ void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScrat
                        [&](std::size_t begin, std::size_t end) { find_goals(model, state, scratch, set, begin, end); });
 }
 
-void solve_and_apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+void solve_and_apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h, int passes,
                      const Workers& workers) {
     CATHLAB_CHECK(scratch.force.size() == model.size(), "predict comes before");
-    prepare_goals(model, state, scratch, workers);
     const kernel::Set& set = kernel::best();
-    const kernel::Particles walked = particles(model, state, scratch, h);
-    workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
-        // Piece by piece, so that the goals are still at hand when they are applied.
-        for (std::size_t first = begin; first < end; first += piece) {
-            const std::size_t last = std::min(first + piece, end);
-            find_goals(model, state, scratch, set, first, last);
-            set.apply(walked, first, last);
-        }
-    });
+    const bool on_grid = !elastic(model) && model.precision == Precision::float_;
+    for (int pass = 0; pass < passes; ++pass) {
+        // From the second pass on, the grid's places come from the walk before.
+        if (pass > 0 && on_grid)
+            fit_all(model, state, scratch, workers);
+        else
+            prepare_goals(model, state, scratch, workers);
+        const kernel::Particles walked = particles(model, state, scratch, h);
+        const bool another = on_grid && pass + 1 < passes;
+        workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
+            // Piece by piece, so that the goals are still at hand when they are applied.
+            for (std::size_t first = begin; first < end; first += piece) {
+                const std::size_t last = std::min(first + piece, end);
+                find_goals(model, state, scratch, set, first, last);
+                set.apply(walked, first, last);
+                if (another) to_grid(state, scratch, set, first, last);
+            }
+        });
+    }
 }
 
 void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
@@ -409,6 +451,7 @@ void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScrat
                  const Workers& workers) {
     CATHLAB_CHECK(scratch.goal.size() == model.size(), "the whole wall is fitted before a part of it");
     const kernel::Set& set = kernel::best();
+    if (!elastic(model)) all_to_grid(model, state, scratch, workers);
     const Clusters clusters(model);
     workers.for_ranges(part.groups.size(), group_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
@@ -447,9 +490,10 @@ void finish(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& s
             const Workers& workers) {
     if (elastic(model) &&
         model.damping_per_s > 0.0) {  // the velocities go over to those of the clusters' rigid motions here as well
+        all_to_grid(model, state, scratch, workers);
         fit_all(model, state, scratch, workers);
         workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
-            gather(model, scratch, kernel::best(), begin, end);
+            gather(model, state, scratch, kernel::best(), begin, end);
         });
     }
     const kernel::Particles walked = particles(model, state, scratch, h);

@@ -39,7 +39,10 @@ struct SoftBodyScratch {
     std::vector<double>
         stiffness_scale;  ///< (n) factor on k_i, > 0, or empty for 1: effects of the material write it before predict
     Fibres fibres;        ///< of the elastic form: an effect of the material writes them before predict
-    AlignedVector<double> transform;   ///< (lanes x 12) of the clusters
+    AlignedVector<double> transform;  ///< fits in double: (lanes x 12) of the clusters
+    AlignedVector<std::int32_t> grid,
+        grid_transform;                ///< fits in float: (n x 3 + 1) x, (lanes x 12); kernel.h, grid_mm
+    std::vector<std::uint8_t> far;     ///< fits in float: (groups) whether sums of transforms may have gone round
     std::vector<double> hold;          ///< elastic form: (n) k_i now, written by predict
     AlignedVector<double> slot_force;  ///< elastic form: (slots x 3 x 8) of the triangles on their particles
     std::vector<Vec3> momentum;        ///< linear and angular of each free body when the substep began, two each
@@ -74,8 +77,8 @@ void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScrat
 void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
            const Workers& workers);
 
-/// solve_goals and apply in one walk over the particles.
-void solve_and_apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
+/// solve_goals and apply, `passes` times, in one walk over the particles each.
+void solve_and_apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h, int passes,
                      const Workers& workers);
 
 /// A part of the wall: the clusters that hold any of some particles, and all particles of those clusters.  Passes after

@@ -219,7 +219,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
         sums.surface_follows = false;
         if (pass == 0) {
             extra.gather(p);
-            solve_and_apply(wall, state, scratch, h, workers);
+            solve_and_apply(wall, state, scratch, h, 1, workers);
         } else {
             solve_goals(wall, state, scratch, touched, workers);
             extra.gather(p);

@@ -25,7 +25,7 @@ void wall_pass(benchmark::State& state, Precision precision) {
     SoftBodyScratch scratch;
     const Workers alone(1);
     predict(model, moving, scratch, step_s, {}, alone);
-    for (auto _ : state) solve_and_apply(model, moving, scratch, step_s, alone);
+    for (auto _ : state) solve_and_apply(model, moving, scratch, step_s, 1, alone);
     state.SetComplexityN(static_cast<std::int64_t>(model.membership_count()));
 }
 

@@ -159,17 +159,25 @@ void compare_sets(Precision precision) {
     wall.step(0.004, 2);
     const auto run = [&](const kernel::Set& set, std::vector<double>& goal) {
         std::vector<double> rotation = wall.state.rotation;
-        AlignedVector<double> transform(wall.scratch.transform.size());
+        const std::size_t numbers = (wall.model.empty_lane() + 1) * kernel::transform_numbers;
+        AlignedVector<double> transform(numbers);
+        AlignedVector<std::int32_t> grid(3 * wall.model.size() + 1), grid_transform(numbers);
+        std::vector<std::uint8_t> far(wall.model.group_count());
         const kernel::Groups<double> view = wall.model.clusters.view();
         const kernel::Groups<float> view_float = wall.model.clusters_float.view();
         const double* x = wall.state.x.front().data();
-        if (precision == Precision::double_)
-            set.fit_double(&view, x, rotation.data(), transform.data(), 0, wall.model.group_count());
-        else
-            set.fit_float(&view_float, x, rotation.data(), transform.data(), 0, wall.model.group_count());
+        const double* rest = wall.model.rest.front().data();
+        const kernel::Goals goals = wall.model.goals.view();
+        const std::size_t groups = wall.model.group_count();
         goal.resize(3 * wall.model.size());
-        set.gather(wall.model.goals.view(), transform.data(), wall.model.rest.front().data(), goal.data(), 0,
-                   wall.model.size());
+        if (precision == Precision::double_) {
+            set.fit_double(&view, {x, nullptr}, rotation.data(), transform.data(), nullptr, 0, groups);
+            set.gather_double(goals, transform.data(), rest, x, goal.data(), 0, wall.model.size());
+        } else {
+            set.to_grid(x, grid.data(), 0, 3 * wall.model.size());
+            set.fit_float(&view_float, {x, grid.data()}, rotation.data(), grid_transform.data(), far.data(), 0, groups);
+            set.gather_float(goals, grid_transform.data(), rest, x, goal.data(), 0, wall.model.size());
+        }
     };
     std::vector<double> one, two;
     run(kernel::baseline(), one);

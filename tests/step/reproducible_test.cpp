@@ -17,9 +17,9 @@ struct ExpectedHash {
     std::uint64_t hash;
 };
 constexpr std::array<ExpectedHash, 3> expected_hashes{{
-    {"tube_wire", 0xaa9224afa44be04f},
-    {"tube_catheter", 0x8ffc57ab9d789af5},
-    {"fork", 0x9d1ccb7fe0ddf8f3},
+    {"tube_wire", 0x0a3c9ee739468a98},
+    {"tube_catheter", 0x05377a87796f1430},
+    {"fork", 0x332e69b41ae77fa4},
 }};
 
 constexpr int steps = 150;
