@@ -92,7 +92,9 @@ double get_named(const SceneSpec& scene, const std::string& path) {
     if (const SceneEffect* effect = effect_of(copy, path, parameter)) return effect->values.at(parameter);
     void* object = &copy;
     for (const FieldSpec* table : found.tables) object = table->open(object);
-    return std::get<double>(found.field->load(object));
+    const auto value = found.field->load(object);
+    if (const double* number = std::get_if<double>(&value)) return *number;
+    throw UserError("the scene does not say " + path + ", so there is nothing to begin from; write it there");
 }
 
 void set_named(SceneSpec& scene, const std::string& path, double value) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "softbody/cluster_fit.h"
 
 namespace cathlab {
 
@@ -29,80 +30,6 @@ double* numbers(std::vector<Vec3>& v) {
 }
 const double* numbers(const std::vector<double>& v) {
     return v.empty() ? nullptr : v.data();
-}
-
-/// The groups of clusters in the model's precision.
-class Clusters {
-public:
-    explicit Clusters(const SoftBodyModel& model)
-        : wide_(model.precision == Precision::double_),
-          double_(model.clusters.view()),
-          float_(model.clusters_float.view()) {}
-
-    void fit(const kernel::Set& set, SoftBodyState& state, SoftBodyScratch& scratch, std::size_t begin,
-             std::size_t end) const {
-        const kernel::Positions now{numbers(state.x), scratch.grid.data()};
-        if (wide_)
-            set.fit_double(&double_, now, state.rotation.data(), scratch.transform.data(), nullptr, begin, end);
-        else
-            set.fit_float(&float_, now, state.rotation.data(), scratch.grid_transform.data(), scratch.far.data(), begin,
-                          end);
-    }
-    /// Places of a group's particles, with repeats.
-    std::span<const std::int32_t> places(std::size_t group) const {
-        const std::int32_t* slot = wide_ ? double_.first_slot : float_.first_slot;
-        const std::int32_t* place = wide_ ? double_.place : float_.place;
-        const auto first = static_cast<std::size_t>(slot[group]), last = static_cast<std::size_t>(slot[group + 1]);
-        return {place + first * kernel::lanes, (last - first) * kernel::lanes};
-    }
-
-private:
-    bool wide_;
-    kernel::Groups<double> double_;
-    kernel::Groups<float> float_;
-};
-
-/// Positions of particles [begin, end) in steps of the grid.
-void to_grid(const SoftBodyState& state, SoftBodyScratch& scratch, const kernel::Set& set, std::size_t begin,
-             std::size_t end) {
-    set.to_grid(numbers(state.x), scratch.grid.data(), 3 * begin, 3 * end);
-}
-
-/// Where fits are in float, all positions in steps of the grid.
-void all_to_grid(const SoftBodyModel& model, const SoftBodyState& state, SoftBodyScratch& scratch,
-                 const Workers& workers) {
-    if (model.precision == Precision::double_) return;
-    scratch.grid.resize(3 * model.size() + 1);
-    workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
-        to_grid(state, scratch, kernel::best(), begin, end);
-    });
-}
-
-/// Fits all clusters to state.x; the grid has its places already.
-void fit_all(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
-    const kernel::Set& set = kernel::best();
-    const auto empty_last = [&](auto& transform) {
-        transform.resize((model.empty_lane() + 1) * kernel::transform_numbers);
-        std::fill_n(transform.end() - kernel::transform_numbers, kernel::transform_numbers, 0);
-    };
-    if (model.precision == Precision::double_)
-        empty_last(scratch.transform);
-    else
-        empty_last(scratch.grid_transform), scratch.far.resize(model.group_count());
-    scratch.goal.resize(model.size());
-    const Clusters clusters(model);
-    workers.for_ranges(model.group_count(), group_grain,
-                       [&](std::size_t begin, std::size_t end) { clusters.fit(set, state, scratch, begin, end); });
-}
-
-/// Goals of particles [begin, end) from the clusters as they are fitted.
-void gather(const SoftBodyModel& model, const SoftBodyState& state, SoftBodyScratch& scratch, const kernel::Set& set,
-            std::size_t begin, std::size_t end) {
-    const bool wide = model.precision == Precision::double_;
-    const void* transform = wide ? static_cast<const void*>(scratch.transform.data()) : scratch.grid_transform.data();
-    const bool far = !wide && std::find(scratch.far.begin(), scratch.far.end(), 1) != scratch.far.end();
-    (wide ? set.gather_double : set.gather_float)(model.goals.view(), transform, numbers(model.rest),
-                                                  far ? numbers(state.x) : nullptr, numbers(scratch.goal), begin, end);
 }
 
 bool elastic(const SoftBodyModel& model) {
@@ -141,12 +68,12 @@ void prepare_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScr
 }
 
 /// Goals of particles [begin, end): of the clusters as they are fitted, or of the shell as it pulls.
-void find_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const kernel::Set& set,
-                std::size_t begin, std::size_t end) {
+void find_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, std::size_t begin,
+                std::size_t end) {
     if (elastic(model))
         shell_goals(model, state, scratch, begin, end);
     else
-        gather(model, state, scratch, set, begin, end);
+        gather_goals(model, state, scratch, begin, end);
 }
 
 kernel::Particles particles(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h) {
@@ -327,9 +254,8 @@ void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& 
 
 void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
     prepare_goals(model, state, scratch, workers);
-    const kernel::Set& set = kernel::best();
     workers.for_ranges(model.size(), particle_grain,
-                       [&](std::size_t begin, std::size_t end) { find_goals(model, state, scratch, set, begin, end); });
+                       [&](std::size_t begin, std::size_t end) { find_goals(model, state, scratch, begin, end); });
 }
 
 void solve_and_apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h, int passes,
@@ -349,9 +275,9 @@ void solve_and_apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyS
             // Piece by piece, so that the goals are still at hand when they are applied.
             for (std::size_t first = begin; first < end; first += piece) {
                 const std::size_t last = std::min(first + piece, end);
-                find_goals(model, state, scratch, set, first, last);
+                find_goals(model, state, scratch, first, last);
                 set.apply(walked, first, last);
-                if (another) to_grid(state, scratch, set, first, last);
+                if (another) to_grid(state, scratch, first, last);
             }
         });
     }
@@ -432,7 +358,7 @@ WallPart part_around(const SoftBodyModel& model, std::span<const Index> touched)
             for (Index m = model.cluster_start[at(i)]; m < model.cluster_start[at(i) + 1]; ++m)
                 lane[at(model.cluster[at(m)])] = 1;
         }
-    const Clusters clusters(model);
+    const ClusterFit clusters(model);
     for (std::size_t g = 0; g < model.group_count(); ++g) {
         const std::uint8_t* const mine = lane.data() + g * kernel::lanes;
         if (std::all_of(mine, mine + kernel::lanes, [](std::uint8_t m) { return m == 0; })) continue;
@@ -450,21 +376,20 @@ WallPart part_around(const SoftBodyModel& model, std::span<const Index> touched)
 void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const WallPart& part,
                  const Workers& workers) {
     CATHLAB_CHECK(scratch.goal.size() == model.size(), "the whole wall is fitted before a part of it");
-    const kernel::Set& set = kernel::best();
     if (!elastic(model)) all_to_grid(model, state, scratch, workers);
-    const Clusters clusters(model);
+    const ClusterFit clusters(model);
     workers.for_ranges(part.groups.size(), group_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const std::size_t g = at(part.groups[k]);
             if (elastic(model))
                 pull(model, state, scratch, g, g + 1);
             else
-                clusters.fit(set, state, scratch, g, g + 1);
+                clusters.fit(state, scratch, g, g + 1);
         }
     });
     workers.for_ranges(part.runs.size(), run_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k)
-            find_goals(model, state, scratch, set, at(part.runs[k].first), at(part.runs[k].second));
+            find_goals(model, state, scratch, at(part.runs[k].first), at(part.runs[k].second));
     });
 }
 
@@ -493,7 +418,7 @@ void finish(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& s
         all_to_grid(model, state, scratch, workers);
         fit_all(model, state, scratch, workers);
         workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
-            gather(model, state, scratch, kernel::best(), begin, end);
+            gather_goals(model, state, scratch, begin, end);
         });
     }
     const kernel::Particles walked = particles(model, state, scratch, h);

@@ -22,6 +22,9 @@ std::string complaint(const std::function<void()>& action) {
 
 TEST(NamedParameters, EveryNumberOfASceneCanBeReadAndSetByItsPath) {
     SceneSpec scene;
+    EXPECT_NE(complaint([&] { get_named(scene, "wall.friction"); }).find("does not say wall.friction"),
+              std::string::npos);
+    scene.wall.friction = 0.1;
     int count = 0;
     for (const NamedParameter& named : named_parameters()) {
         const double before = get_named(scene, named.path);
