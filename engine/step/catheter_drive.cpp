@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "catheter/give_way.h"
+#include "catheter/start.h"
+#include "contact/penetration.h"
 #include "core/units.h"
 
 namespace cathlab {
@@ -180,6 +182,23 @@ void lay_shaft(Parts& p) {
     route.shape = lie(route.laid);
 }
 
+// A catheter that starts deeper in the wall than this lies along the vessel instead, or less far in.
+constexpr double start_depth_mm = 0.3;
+constexpr double start_step_mm = 2.0;
+
+double depth_in_wall(const Parts& p) {
+    std::vector<DeviceSample> samples;
+    const CatheterShape& lies = p.catheter_route->shape;
+    for (std::size_t i = 0; i < lies.points.size(); ++i) {
+        if (lies.arc[i] < p.catheter->outer_diameter_mm) continue;  // the sheath's mouth holds what is beside it
+        DeviceSample s;
+        s.position = lies.points[i];
+        s.radius = p.catheter->radius_mm();
+        samples.push_back(s);
+    }
+    return penetration_report(*p.surface, *p.surface_state, samples, p.world->workers()).deepest_mm;
+}
+
 // The guidewire that sticks out of the catheter has no say in where the catheter takes it.  While it is pressed into
 // the wall beyond the limits of its own drive the catheter may only give way, that is
 // withdraw and straighten.  True if that took a part of the command.
@@ -203,9 +222,21 @@ bool hold_back(CatheterCommand& command, const CatheterState& state) {
 }  // namespace
 
 void settle_catheter(Parts& p) {
-    choose_route(p);
-    p.catheter_route->laid = wanted_rail(p, 0.0);
-    p.catheter_route->shape = shape(*p.catheter, *p.catheter_state, p.catheter_route->laid);
+    CatheterState& state = *p.catheter_state;
+    const double asked_mm = state.insertion_mm;
+    for (;;) {
+        choose_route(p);
+        p.catheter_route->laid = wanted_rail(p, 0.0);
+        p.catheter_route->shape = shape(*p.catheter, state, p.catheter_route->laid);
+        if (depth_in_wall(p) <= start_depth_mm) break;
+        lie_along(*p.catheter, state, p.catheter_route->laid);
+        p.catheter_route->shape = shape(*p.catheter, state, p.catheter_route->laid);
+        if (depth_in_wall(p) <= start_depth_mm || state.insertion_mm <= 0.0) break;
+        state.insertion_mm = std::max(0.0, state.insertion_mm - start_step_mm);
+    }
+    if (state.insertion_mm < asked_mm)
+        p.event("clamped", catheter_entity,
+                "bent as far as it can, the catheter only fits the vessel at this insertion (mm)", state.insertion_mm);
 }
 
 double move_catheter(Parts& p, const Input& input, const SegmentBends& bends, double h) {

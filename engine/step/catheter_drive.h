@@ -11,7 +11,8 @@ namespace cathlab {
 /// Takes of the catheter's command what the wall allows and moves it.  Returns the refused part, 0 to 1.
 double move_catheter(Parts& parts, const Input& input, const SegmentBends& bends, double h);
 
-/// Brings the rail and the catheter's shape to where the wall is now, without a command.
+/// Lays the catheter where a run begins: straight segments where they fit, else bent along the vessel, and where they
+/// do not fit so either, drawn back to where they do (an event tells).
 void settle_catheter(Parts& parts);
 
 /// The bore of the catheter for the wire inside it; empty where there is no catheter.

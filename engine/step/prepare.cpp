@@ -75,11 +75,11 @@ void prepare(World& world) {
         const bool actuated = std::any_of(parts.effects.begin(), parts.effects.end(), [](const ActiveEffect* active) {
             return (active->info->hooks & hook_actuation) != 0;
         });
+        settle_catheter(parts);
         if (actuated) {
             const double start = parts.catheter_state->insertion_mm, turned = parts.catheter_state->rotation_rad;
             world.add(catheter, CatheterTravel{start, turned, start, turned});
         }
-        settle_catheter(parts);
     }
 }
 
