@@ -64,6 +64,7 @@ void say_end(bool stopped, const CalibrationOutput& output, AppContext& context)
 }
 
 std::string best_text(const char* what, double value, const char* unit) {
+    if (!std::isfinite(value)) return "no curve yet";
     return std::string(what) + " " + plain_number(value, 3) + " " + unit + " so far";
 }
 
