@@ -73,6 +73,17 @@ struct ContactReport {
         0.0;  ///< the same for moments about the origin, taken at the wall points, / sum |q x force|
 };
 
+/// The yielding of a kinematic device's tip, as a spring inside the solve: way = compliance x sum of share x force over
+/// its rows, where a sample moves by its share (DeviceSample::yields) of the way.  A cantilever of one shape: force and
+/// way belong to each other through the same shares, so that no energy is made.
+struct TipYield {
+    double compliance_mm_per_mn = 0.0;  ///< 0 = rigid
+    double most_mm = 0.0;               ///< of the way
+    double most_change_mm = 0.0;        ///< of the way in one substep: what is let go does not jump
+    Vec3 start = Vec3::Zero();          ///< the way at the beginning of the substep
+    Vec3 way = Vec3::Zero();            ///< the one that the samples' positions hold; on return the new one
+};
+
 class ContactSet {
 public:
     explicit ContactSet(const ContactSettings& settings = {});
@@ -116,8 +127,9 @@ public:
     /// Sweeps over the rows of kinematic samples, each seeing what the ones before it did to the wall: particle j gives
     /// way by c_j w_j (change of force), so no averaging by N_j is needed and a dense row of samples converges in a few
     /// sweeps.  particles (mm) move along; the forces that moved them are the ones that apply_to_wall hands out.
+    /// tip: where it yields; the samples follow it (follow_tip), which is the caller's to do.
     void solve_kinematic(std::span<const DeviceSample> samples_now, std::span<Vec3> particles,
-                         std::span<const double> particle_compliance, int sweeps);
+                         std::span<const double> particle_compliance, int sweeps, TipYield* tip = nullptr);
 
     /// Adds the particles of the rows that are closed or nearly so at the last refresh; repeats are possible.
     void add_touched(std::vector<Index>& particles) const;

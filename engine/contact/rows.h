@@ -18,6 +18,8 @@ struct DeviceSample {
     Index hint = -1;          ///< triangle to start from; -1 = what the set remembers of this sample
     int walls = 0;  ///< rows at most, 0 = as the set's settings say; the front end of a device meets several walls
     bool kinematic = false;  ///< the device does not give way (steerable catheter): solve_kinematic takes its rows
+    double yields =
+        0.0;  ///< a kinematic device's: the share of its tip's yielding that this point takes part in, 0 to 1
     Vec3 previous = Vec3::Zero();  ///< position at the beginning of the substep, mm, world
     Vec3 rotation = Vec3::Zero();  ///< rotation vector of the link since the beginning of the substep, rad, world: a
                                    ///< turning wire rubs on the wall

@@ -63,6 +63,8 @@ struct Actuation {
     double tip_length_mm = 0.0;             ///< straight, after the last segment
     Vec3 down = Vec3::Zero();  ///< direction of gravity in the frame of the base (which turns with the rotation);
                                ///< zero = not known
+    /// How far the tip yields under a force on it, in any direction; see step/tip_yield.h.
+    double tip_compliance_mm_per_n = 0.0;
 };
 
 /// `drive`: where the supports go and how the heart is paced.

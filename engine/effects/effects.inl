@@ -9,6 +9,7 @@ CATHLAB_EFFECT(tendon_slack)
 CATHLAB_EFFECT(segment_coupling)
 CATHLAB_EFFECT(rest_memory)
 CATHLAB_EFFECT(gravity_sag)
+CATHLAB_EFFECT(tip_compliance)
 // Heart and body.
 CATHLAB_EFFECT(respiration)
 CATHLAB_EFFECT(alternans)

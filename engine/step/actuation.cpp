@@ -72,6 +72,7 @@ void actuate(Parts& p, const EffectContext& context, Input& input, SegmentBends&
         act.segments.push_back(segment_of(segments[i], radius, bends.bend_deg[i], bends.direction_deg[i]));
 
     p.each_effect(hook_actuation, [&](Effect& effect) { effect.actuation(context, act); });
+    p.catheter_route->tip_compliance_mm_per_n = act.tip_compliance_mm_per_n;
 
     for (std::size_t i = 0; i < act.segments.size(); ++i)
         put(act.segments[i], bends.bend_deg[i], bends.direction_deg[i]);

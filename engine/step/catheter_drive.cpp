@@ -7,6 +7,7 @@
 #include "catheter/start.h"
 #include "contact/penetration.h"
 #include "core/units.h"
+#include "step/tip_yield.h"
 
 namespace cathlab {
 namespace {
@@ -126,7 +127,8 @@ WallAround wall_around(const Parts& p, const CatheterShape& now) {
         WallLimit limit;
         limit.point = static_cast<Index>(point);
         limit.normal = rows[i].normal;
-        limit.gap = rows[i].normal.dot(now.points[point] - wall[i].point) - wall[i].offset;
+        const Vec3 place = now.points[point] + tip_share(*p.catheter, wall[i].arc_mm) * p.catheter_route->yielded;
+        limit.gap = rows[i].normal.dot(place - wall[i].point) - wall[i].offset;
         limit.force = around.load * p.catheter->force_limit_n * units::newton;
         limit.penetration_limit = std::min(p.catheter->penetration_limit_mm, depth_a_substep_mm);
         limit.force_limit = p.catheter->force_limit_n * units::newton;
@@ -242,6 +244,7 @@ void settle_catheter(Parts& p) {
 double move_catheter(Parts& p, const Input& input, const SegmentBends& bends, double h) {
     CatheterState& state = *p.catheter_state;
     CatheterRoute& route = *p.catheter_route;
+    take_back_yield(route);
     choose_route(p);
     lay_shaft(p);
     const Rail& rail = route.laid;
@@ -278,6 +281,7 @@ double move_catheter(Parts& p, const Input& input, const SegmentBends& bends, do
     CatheterTaken taken = take(*p.catheter, state, command, rail, limits, pace * h, limit);
     state = taken.state;
     route.shape = std::move(taken.shape);
+    give_yield(*p.catheter, route);
     return held ? 1.0 : std::max(taken.refused, 1.0 - pace);
 }
 

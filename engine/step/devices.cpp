@@ -6,6 +6,7 @@
 #include "core/deterministic_math.h"
 #include "core/units.h"
 #include "step/catheter_drive.h"
+#include "step/tip_yield.h"
 
 namespace cathlab {
 namespace {
@@ -132,6 +133,7 @@ void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceS
             d.arc_mm = from_tip;
             if (from_tip < p.catheter->outer_diameter_mm) d.walls = walls_of_a_tip;
             d.friction = p.catheter->friction;
+            if (p.catheter_route->tip_compliance_mm_per_n > 0.0) d.yields = tip_share(*p.catheter, from_tip);
             d.kinematic = true;
             samples.list.push_back(d);
         }

@@ -75,7 +75,12 @@ struct CatheterRoute {
     /// away with it.
     std::vector<Vec3> path;
     Rail laid;            ///< where its shaft lies: on its way to what route and wire ask for
-    CatheterShape shape;  ///< where it lies now; follows from its state and `laid`
+    CatheterShape shape;  ///< where it lies now; follows from its state and `laid`, and from `yielded`
+    /// Where an effect lets the tip yield (tip_yield.h): by how much it does, and where drive and rail alone put the
+    /// catheter (no points = the same as `shape`).
+    double tip_compliance_mm_per_n = 0.0;
+    Vec3 yielded = Vec3::Zero();
+    CatheterShape driven;
     /// What follows from the route alone, kept while that stays the same.
     std::vector<std::int64_t> rail_route;
     Rail rail;
@@ -84,6 +89,7 @@ struct CatheterRoute {
 inline void visit(Archive& archive, CatheterRoute& route) {
     archive.field("laid", route.laid.points);
     archive.field("lead", route.laid.lead);
+    if (route.yielded != Vec3::Zero()) archive.field("yielded", route.yielded);
 }
 
 /// Component of the heart: forces between cylinder and wall, kept from substep to substep as a warm start.

@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "step/catheter_drive.h"
 #include "step/devices.h"
+#include "step/tip_yield.h"
 #include "step/wall_forces.h"
 #include "step/wire_weight.h"
 
@@ -211,6 +212,8 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
     // that a row sees the gap that the wall would really leave.
     std::vector<ChainRow> rows;
     std::vector<ChainRow> bore_rows;
+    std::optional<TipYield> tip;
+    if (p.catheter && p.catheter_route->tip_compliance_mm_per_n > 0.0) tip = tip_yield(*p.catheter, *p.catheter_route);
     int passes = p.settings->iterations;
     bool looked_again = false, too_deep = false;
     WallPart touched;  // by devices and heart: passes after the first look at the wall around them alone
@@ -241,7 +244,13 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
             refresh_samples(p, samples);
             p.contacts->refresh(samples.list, state.x);
         }
-        p.contacts->solve_kinematic(samples.list, state.x, scratch.compliance, kinematic_sweeps);
+        if (tip) {
+            const Vec3 held = tip->way;
+            p.contacts->solve_kinematic(samples.list, state.x, scratch.compliance, kinematic_sweeps, &*tip);
+            follow_tip(samples.list, held, tip->way);
+        } else {
+            p.contacts->solve_kinematic(samples.list, state.x, scratch.compliance, kinematic_sweeps);
+        }
         extra.solve(p);
 
         p.stage("softbody");
@@ -269,6 +278,11 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
 
     // 4. Velocities from positions, forces from multipliers.
     finish(wall, state, scratch, h, workers);
+    if (tip) {
+        take_back_yield(*p.catheter_route);
+        p.catheter_route->yielded = tip->way;
+        give_yield(*p.catheter, *p.catheter_route);
+    }
     if (too_deep) {
         p.stage("contact");
         push_out(*p.surface, *sums.surface_near, *p.contacts, samples.list, pushed_out_mm, scratch.compliance, state.x,

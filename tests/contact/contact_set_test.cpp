@@ -215,6 +215,49 @@ TEST(Contact, AKinematicDevicePressedIntoTheWallReadsItsSpring) {
     EXPECT_NEAR(report.devices.at(0).normal_mn, 0.02 / compliance, 0.02 * 0.02 / compliance);
 }
 
+TEST(Contact, ATipThatYieldsAndTheWallAreTwoSpringsInARow) {
+    // Driven 0.02 mm into a wall of compliance C, a tip of compliance c: force 0.02 / (C + c), way c x force.
+    for (const double tip_compliance : {0.0, 0.01, 0.2}) {
+        SpringWall wall(test::straight_tube(8.0, 40.0, 40, 40));
+        ContactSet contacts;
+        DeviceSample s;
+        s.radius = 1.5;
+        s.kinematic = true;
+        s.yields = 1.0;
+        const Index face = 2 * 40 * 20;
+        const Triangle& t = wall.surface.model.triangles[face];
+        Vec3 middle = Vec3::Zero();
+        for (int k = 0; k < 3; ++k) middle += wall.rest[static_cast<std::size_t>(t[k])] / 3.0;
+        const Vec3 driven = middle + 1.48 * inward_triangle_normal(wall.surface.model, wall.surface.state, face);
+        TipYield tip;
+        tip.compliance_mm_per_mn = tip_compliance;
+        tip.most_mm = 1.0;
+        tip.most_change_mm = 0.3;
+        for (int i = 0; i < 400; ++i) {
+            wall.predict();
+            s.position = s.previous = driven + tip.way;
+            std::vector<DeviceSample> samples{s};
+            tip.start = tip.way;
+            contacts.detect(wall.surface.model, wall.surface.state, samples, 1.5, wall.before, wall.compliance(),
+                            Workers(1));
+            for (int k = 0; k < 2; ++k) {
+                contacts.refresh(samples, wall.x);
+                contacts.solve_kinematic(samples, wall.x, wall.compliance(), 4, &tip);
+                samples[0].position = driven + tip.way;
+                wall.apply(contacts);
+            }
+            wall.finish();
+        }
+        const WallRow& row = contacts.wall_rows()[0];
+        double compliance = 0.0;
+        for (std::size_t j = row.begin; j < row.end; ++j)
+            compliance += contacts.weights()[j] * contacts.weights()[j] / wall.k;
+        const double force = contacts.report(wall.x).devices.at(0).normal_mn;
+        EXPECT_NEAR(force, 0.02 / (compliance + tip_compliance), 0.02 * force) << tip_compliance;
+        EXPECT_NEAR(tip.way.norm(), tip_compliance * force, 1e-6 + 0.001 * tip_compliance * force);
+    }
+}
+
 TEST(Contact, NoSampleTunnelsAtFullSpeedOrAtTenTimesThat) {
     TriMesh mesh = test::straight_tube(1.5, 40.0, 60, 16);
     test::add_tube(
