@@ -69,4 +69,59 @@ void add_bore_rows(const CatheterBore& bore, std::span<const RodSample> samples,
     }
 }
 
+void add_outside_rows(const CatheterOutside& catheter, std::span<const RodSample> samples,
+                      std::span<const std::size_t> beside, std::vector<ChainRow>& rows) {
+    CATHLAB_CHECK(catheter.radius_mm > 0.0 && catheter.compliance > 0.0, "a catheter's wall has a radius and yields");
+    const std::span<const Vec3> line = catheter.line.points;
+    CATHLAB_CHECK(line.size() == catheter.line.arc.size(), "one arc length a point of the catheter");
+    if (line.size() < 2) return;
+    Vec3 low = line.front(), high = low;
+    for (const Vec3& p : line) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    for (const std::size_t k : beside) {
+        const RodSample& s = samples[k];
+        const double touching = catheter.radius_mm + s.radius, reach = touching + catheter.margin_mm;
+        if (((low.array() - reach) > s.position.array()).any() || ((high.array() + reach) < s.position.array()).any())
+            continue;
+        double best = reach * reach;
+        Vec3 foot = Vec3::Zero(), along = Vec3::Zero();
+        bool found = false, first = true;
+        for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+            const Vec3 edge = line[i + 1] - line[i];
+            const double length2 = edge.squaredNorm();
+            if (catheter.line.arc[i] < catheter.near_mouth_mm || length2 == 0.0) continue;
+            const double part = (s.position - line[i]).dot(edge) / length2;
+            const Vec3 point = line[i] + std::clamp(part, 0.0, 1.0) * edge;
+            const double d = (s.position - point).squaredNorm();
+            if (d < best) {
+                best = d;
+                foot = point;
+                along = edge;
+                found = !(first && part < 0.0);  // beside it, not in the mouth
+            }
+            first = false;
+        }
+        if (!found) continue;
+        Vec3 away = s.position - foot;
+        double distance = away.norm();
+        if (distance < 1e-9) {
+            away = along.cross(std::fabs(along.x()) < 0.7 * along.norm() ? Vec3::UnitX() : Vec3::UnitY());
+            distance = away.norm();
+            away /= distance;
+            distance = 0.0;
+        } else {
+            away /= distance;
+        }
+        ChainRow row;
+        row.link = s.link;
+        row.normal = away;
+        row.arm = s.arm - s.radius * away;
+        row.gap = std::max(distance - touching, -catheter.deepest_mm);
+        row.compliance = catheter.compliance;
+        rows.push_back(row);
+    }
+}
+
 }  // namespace cathlab

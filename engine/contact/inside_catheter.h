@@ -1,4 +1,4 @@
-// A guidewire inside a catheter: rows that keep it on the catheter's centre-line.
+// A guidewire in a catheter, or beside it: rows that keep it on the catheter's centre-line, or outside its wall.
 #pragma once
 
 #include <span>
@@ -27,5 +27,21 @@ bool inside_bore(const CatheterBore& bore, double arc_from_mouth);
 /// curls back on itself cannot catch the wrong turn.
 void add_bore_rows(const CatheterBore& bore, std::span<const RodSample> samples, std::span<const double> arc_from_mouth,
                    double spacing_mm, double compliance, std::vector<ChainRow>& rows);
+
+/// The catheter's outer wall, for a wire beside it.
+struct CatheterOutside {
+    CatheterBore line;           ///< its centre-line
+    double radius_mm = 0.0;      ///< of the catheter, > 0
+    double compliance = 0.0;     ///< of its wall, mm/mN, > 0
+    double margin_mm = 0.0;      ///< rows are made up to this distance between the surfaces
+    double deepest_mm = 0.0;     ///< a wire that is deeper in is pushed out as if it were so deep: it is not shot out
+    double near_mouth_mm = 0.0;  ///< so far from the catheter's sheath both come out of it, and nothing touches
+};
+
+/// Appends one row for each sample (its place in `samples` named by `beside`) that is near the catheter's side: along
+/// the way from the nearest point of the centre-line, without friction; the tip is round.  The wire that comes out of
+/// the tip is the caller's to leave out.
+void add_outside_rows(const CatheterOutside& catheter, std::span<const RodSample> samples,
+                      std::span<const std::size_t> beside, std::vector<ChainRow>& rows);
 
 }  // namespace cathlab

@@ -28,7 +28,7 @@ constexpr double shift_free_mm = 0.5;
 // Two elastic rods in one another take the curvatures that either would have alone in the ratio of their stiffnesses: a
 // stiff guidewire inside leads the steerable part along the vessel and is hardly bent by it.
 std::vector<double> led_by_wire(const Parts& p, const std::vector<double>& arcs) {
-    if (!p.wire || p.catheter->inner_diameter_mm <= 0.0) return {};
+    if (!wire_inside(p)) return {};
     std::vector<double> lead;
     lead.reserve(arcs.size());
     const double front = p.wire->insertion_mm();
@@ -67,7 +67,7 @@ void choose_route(Parts& p) {
     std::vector<Vec3> guide;
     if (!route.shape.points.empty()) guide = steering_guide(*p.catheter, route.shape);
     double ahead = route_lookahead_mm;
-    if (p.wire && p.catheter->inner_diameter_mm > 0.0) {
+    if (wire_inside(p)) {
         // The rail has to lead the whole steerable part, as far as the wire reaches.
         ahead = std::clamp(p.wire->insertion_mm() - std::max(base, 0.0), ahead, steerable + rail_support_mm({}));
         if (p.wire->insertion_mm() > state.insertion_mm) {
@@ -90,7 +90,7 @@ Rail wanted_rail(Parts& p, double yielding) {
                                                    p.catheter->steerable_length_mm() + beyond_route_mm);
     }
     Rail rail = route.rail;
-    if (p.mount->follow_wire && p.wire) {
+    if (p.mount->follow_wire && wire_inside(p)) {
         const std::vector<Vec3> line = wire_line(p);
         rail = laid_over_wire(route.laid, route.rail, line.size() > 2 ? build_rail(p.mount->mouth, line, {}) : Rail{},
                               p.catheter_state->insertion_mm, yielding);
@@ -285,8 +285,14 @@ double move_catheter(Parts& p, const Input& input, const SegmentBends& bends, do
     return held ? 1.0 : std::max(taken.refused, 1.0 - pace);
 }
 
+bool wire_inside(const Parts& p) {
+    constexpr double same_sheath_mm = 1.0;
+    return p.catheter && p.wire && p.catheter->inner_diameter_mm > 0.0 &&
+           (p.wire->sheath().mouth.position - p.mount->mouth.position).norm() < same_sheath_mm;
+}
+
 CatheterBore catheter_bore(const Parts& p) {
-    if (!p.catheter || !p.wire || p.catheter->inner_diameter_mm <= 0.0) return {};
+    if (!wire_inside(p)) return {};
     const CatheterShape& shape = p.catheter_route->shape;
     return {shape.points, shape.arc};
 }

@@ -15,6 +15,9 @@ double move_catheter(Parts& parts, const Input& input, const SegmentBends& bends
 /// do not fit so either, drawn back to where they do (an event tells).
 void settle_catheter(Parts& parts);
 
+/// Whether the wire runs in the catheter: that has a lumen, and both come out of one sheath.
+bool wire_inside(const Parts& parts);
+
 /// The bore of the catheter for the wire inside it; empty where there is no catheter.
 CatheterBore catheter_bore(const Parts& parts);
 

@@ -18,6 +18,12 @@ namespace {
 // 1 N, the clearance of a 0.035 in wire in a 6 Fr lumen.  Small beside the wall's 0.01 mm/mN.
 constexpr double bore_compliance = 2e-4;
 constexpr double bore_spacing_mm = 2.5;
+// The outside of the catheter against a wire beside it: 0.2 mm under 1 N, too.  What lies deeper in (a scene may begin
+// so) is pushed out by 0.5 N a sample.
+constexpr double outside_compliance = 2e-4;
+constexpr double outside_deepest_mm = 0.1;
+// The wire that comes out of the catheter's tip, or both out of one sheath, may lie along each other for so long.
+constexpr double leaving_diameters = 3.0;
 // Sweeps over the catheter's rows in a pass: cheap beside a fit of the clusters.
 constexpr int kinematic_sweeps = 6;
 // The chain is solved again at once, against the wall that has yielded to it, while it is pressed in deeper than this.
@@ -90,7 +96,20 @@ void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<Ch
             now[i].position = pose.position + now[i].arm;
             from_mouth.push_back(insertion - samples.wire_arc[i]);
         }
-        add_bore_rows(catheter_bore(p), now, from_mouth, bore_spacing_mm, bore_compliance, fresh);
+        const CatheterBore bore = catheter_bore(p);
+        add_bore_rows(bore, now, from_mouth, bore_spacing_mm, bore_compliance, fresh);
+        std::vector<std::size_t> beside;
+        const double ahead = leaving_diameters * p.catheter->outer_diameter_mm;
+        for (const std::size_t i : samples.wire_free)
+            if (bore.arc.empty() || from_mouth[i] > bore.arc.back() + ahead) beside.push_back(i);
+        const CatheterShape& lies = p.catheter_route->shape;
+        add_outside_rows({{lies.points, lies.arc},
+                          p.catheter->radius_mm(),
+                          outside_compliance,
+                          p.settings->contact_margin_mm,
+                          outside_deepest_mm,
+                          ahead},
+                         now, beside, fresh);
         bore_rows = std::move(fresh);
         rows.insert(rows.end(), bore_rows.begin(), bore_rows.end());
     }
