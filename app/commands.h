@@ -16,6 +16,8 @@ void add_run_command(CLI::App& app, AppContext& context);
 void add_replay_command(CLI::App& app, AppContext& context);
 /// `render`: the pictures of a recorded run again, from elsewhere.
 void add_render_command(CLI::App& app, AppContext& context);
+/// `play`: the trainer's window.
+void add_play_command(CLI::App& app, AppContext& context);
 void add_list_command(CLI::App& app, AppContext& context);
 void add_check_command(CLI::App& app, AppContext& context);
 void add_calibrate_command(CLI::App& app, AppContext& context);

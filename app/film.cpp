@@ -1,7 +1,6 @@
 #include "film.h"
 
 #include <algorithm>
-#include <deque>
 #include <optional>
 
 #include "describe_frame.h"
@@ -9,13 +8,12 @@
 #include "hud/hud.h"
 #include "hud_fill.h"
 #include "label_recorder.h"
+#include "message_lines.h"
 #include "render/frame_renderer.h"
 
 namespace cathlab {
 namespace {
 
-constexpr std::size_t message_lines = 4;
-constexpr double message_s = 4.0;
 constexpr std::size_t queue_slots = 4;  // pictures that a slow moment of the film may lag behind
 
 DicomFrame machine_of(const Channels& channels, const ViewChange& view) {
@@ -50,9 +48,7 @@ struct Film::Impl {
             return;
         }
         fill_hud(scene, channels, panels);
-        while (!messages.empty() && messages.front().time_s < channels.time_s - message_s) messages.pop_front();
-        panels.messages.clear();
-        for (const Event& event : messages) panels.messages.push_back(event.message);
+        messages.at(channels.time_s, panels.messages);
         HudLayout layout;
         layout.width = static_cast<float>(options.width);
         layout.height = static_cast<float>(options.height);
@@ -68,7 +64,7 @@ struct Film::Impl {
     std::optional<FrameCamera> camera;  // of the picture before
     FrameMemory memory;
     HudData panels;
-    std::deque<Event> messages;
+    MessageLines messages;
     std::unique_ptr<LabelRecorder> labels;
     std::size_t count = 0;
 };
@@ -107,14 +103,7 @@ void Film::add(World& world, const Channels& channels) {
 }
 
 void Film::message(const Event& event) {
-    // A command that is refused is refused in every step: the same sentence moves on instead of filling the lines.
-    for (Event& known : impl_->messages) {
-        if (known.kind != event.kind || known.entity != event.entity) continue;
-        known = event;
-        return;
-    }
-    impl_->messages.push_back(event);
-    if (impl_->messages.size() > message_lines) impl_->messages.pop_front();
+    impl_->messages.add(event);
 }
 
 void Film::keep_poster() {

@@ -40,6 +40,7 @@ int run_program(int argc, char** argv) {
     add_run_command(app, context);
     add_replay_command(app, context);
     add_render_command(app, context);
+    add_play_command(app, context);
     add_list_command(app, context);
     add_check_command(app, context);
     add_calibrate_command(app, context);

@@ -6,12 +6,11 @@
 
 #include "commands.h"
 #include "core/errors.h"
-#include "core/log.h"
 #include "film.h"
 #include "progress.h"
 #include "record/run_reader.h"
+#include "recorded_scene.h"
 #include "run_options.h"
-#include "scene/load_scene.h"
 #include "session.h"
 
 namespace cathlab {
@@ -26,18 +25,6 @@ struct ReplayOptions {
     std::string still;  // "" or a file: the last picture
     double to_s = 0.0;  // 0: to the run's end
 };
-
-SceneSpec recorded_scene(const RunRecord& run, const AppContext& context) {
-    std::vector<std::string> overlays;
-    for (const std::string& overlay : run.manifest.overlays) overlays.push_back(find_scene(overlay, context.data_root));
-    SceneSpec scene = load_scene(find_scene(run.manifest.scene, context.data_root), overlays, context.data_root);
-    if (scene.hash != run.manifest.scene_hash)
-        throw UserError(run.folder + ": the scene " + scene.path +
-                        ", its overlays or the files that it names have changed since this run was recorded");
-    if (run.manifest.version != CATHLAB_VERSION)
-        log::warn("recorded by version " + run.manifest.version + ", this is " CATHLAB_VERSION);
-    return scene;
-}
 
 // Compares step by step: the trace has every channel of every step, the hashes all of the state every 50 steps.
 class Verifier {

@@ -1,14 +1,9 @@
 // cathlab run: a scene and a script -> a run folder.
-#include <sys/utsname.h>
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "commands.h"
@@ -16,6 +11,7 @@
 #include "film.h"
 #include "progress.h"
 #include "record/run_writer.h"
+#include "run_facts.h"
 #include "run_options.h"
 #include "scene/load_scene.h"
 #include "scene/script.h"
@@ -39,28 +35,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-std::string utc_now() {
-    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    std::tm parts{};
-    ::gmtime_r(&now, &parts);
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-    return text;
-}
-
-std::string host_text() {
-    utsname names{};
-    if (::uname(&names) != 0) return "unknown";
-    return std::string(names.nodename) + " " + names.machine + ", " + std::to_string(::sysconf(_SC_NPROCESSORS_ONLN)) +
-           " processors";
-}
-
-std::string metrics_json(const Metrics& metrics) {
-    nlohmann::ordered_json out;
-    for (const MetricInfo& metric : metric_table()) out[std::string(metric.name)] = metrics.*metric.value;
-    return out.dump(2) + "\n";
 }
 
 // The run itself: everything that must be closed in order when it ends, however it ends.
@@ -114,20 +88,10 @@ private:
         }
     }
     static RunManifest manifest(const RunOptions& options, Session& session, const AppContext& context) {
-        RunManifest m;
-        m.version = CATHLAB_VERSION;
-        m.scene = path_for_manifest(session.scene().path, context.data_root);
-        for (const std::string& overlay : options.overlays)
-            m.overlays.push_back(path_for_manifest(overlay, context.data_root));
-        m.scene_name = session.scene().name;
-        m.scene_hash = session.scene().hash;
-        m.anatomy_hash = session.anatomy_hash();
+        RunManifest m = manifest_of(session.scene(), options.overlays, session.anatomy_hash(), context);
         if (!options.script.empty()) m.script = path_for_manifest(options.script, context.data_root);
         m.seed = session.world().seed();
-        m.dt_s = session.dt();
         m.threads = options.threads;
-        m.host = host_text();
-        m.started_utc = utc_now();
         return m;
     }
 

@@ -32,12 +32,14 @@ std::shared_ptr<const SceneModels> session_models(const SceneSpec& scene, int th
     return models;
 }
 
-Session::Session(const SceneSpec& scene, std::uint64_t seed, int threads, const AppContext& context) : scene_(scene) {
-    const auto models = session_models(scene_, threads, context);
-    world_ = build_world(scene_, *models, seed, threads);
-    anatomy_hash_ = cathlab::anatomy_hash(*models);
-    prepare(*world_);
+Session::Session(const SceneSpec& scene, std::uint64_t seed, int threads, const AppContext& context)
+    : Session(scene, *session_models(scene, threads, context), seed, threads) {
     end_if_wanted();
+}
+
+Session::Session(const SceneSpec& scene, const SceneModels& models, std::uint64_t seed, int threads)
+    : scene_(scene), world_(build_world(scene_, models, seed, threads)), anatomy_hash_(cathlab::anatomy_hash(models)) {
+    prepare(*world_);
 }
 
 void Session::step(const Input& input) {

@@ -24,6 +24,8 @@ class Session {
 public:
     /// Builds the world (with progress on stderr).  Throws UserError.
     Session(const SceneSpec& scene, std::uint64_t seed, int threads, const AppContext& context);
+    /// The same from models that stand already: quick.
+    Session(const SceneSpec& scene, const SceneModels& models, std::uint64_t seed, int threads);
 
     void step(const Input& input);
 

@@ -87,6 +87,13 @@ void read_hashes(RunRecord& run) {
     if (where.line == 0) throw UserError(where, "is empty");
 }
 
+// Of a run that broke off: a row is written after the input that led to it.
+std::int64_t trace_rows(const std::string& folder) {
+    const std::string path = folder + "/trace.csv";
+    if (!std::filesystem::exists(path)) return 0;
+    return std::max<std::int64_t>(0, static_cast<std::int64_t>(read_lines(path, false).size()) - 1);
+}
+
 }  // namespace
 
 const Input& RunRecord::input_at(std::int64_t step) const {
@@ -110,7 +117,7 @@ RunRecord read_run(const std::string& folder) {
     if (run.manifest.complete && end != run.manifest.steps)
         throw UserError(folder + "/inputs.jsonl: does not end with the run's " + std::to_string(run.manifest.steps) +
                         " steps (truncated or edited?)");
-    run.steps = end >= 0 ? end : std::max(last_input + 1, last_hash);
+    run.steps = end >= 0 ? end : std::max({last_input + 1, last_hash, run.manifest.complete ? 0 : trace_rows(folder)});
     if (last_input >= run.steps && run.steps > 0)
         throw UserError(folder + "/inputs.jsonl: has an input for step " + std::to_string(last_input) + " of " +
                         std::to_string(run.steps));

@@ -26,7 +26,7 @@ struct RunRecord {
         inputs;                        ///< first step, from which on it holds; ascending, the first is 0
     std::vector<RecordedHash> hashes;  ///< ascending
     std::int64_t steps =
-        0;  ///< that can be replayed: all of a finished run, up to the last input or hash of a broken one
+        0;  ///< that can be replayed: all of a finished run, up to the last input, row or hash of a broken one
 
     const Input& input_at(std::int64_t step) const;
 };

@@ -62,6 +62,7 @@ void RunWriter::input(std::int64_t step, const Input& input) {
         values[std::string(action.name)] = input.*action.value;
     }
     inputs_.add(dump({{"step", step}, {"input", std::move(values)}}));
+    inputs_.flush();  // no row of the trace may reach the disk before the input that made it
 }
 
 void RunWriter::step(std::int64_t step, const Channels& channels, const std::vector<Event>& events) {
@@ -75,12 +76,14 @@ void RunWriter::step(std::int64_t step, const Channels& channels, const std::vec
                           {"entity", e.entity},
                           {"message", e.message},
                           {"value", e.value}}));
-    if ((step + 1) % flush_interval == 0) {
-        inputs_.flush();
-        trace_.flush();
-        events_.flush();
-        hashes_.flush();
-    }
+    if ((step + 1) % flush_interval == 0) flush();
+}
+
+void RunWriter::flush() {
+    inputs_.flush();
+    trace_.flush();
+    events_.flush();
+    hashes_.flush();
 }
 
 void RunWriter::hash(std::int64_t steps, const World::StateHash& hash) {

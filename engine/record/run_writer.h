@@ -25,6 +25,8 @@ public:
     void input(std::int64_t step, const Input& input);
     /// After the step of this index: the channels, and what happened.  Flushed every 25 steps.
     void step(std::int64_t step, const Channels& channels, const std::vector<Event>& events);
+    /// Hands over to the system what a crash of this process would lose.
+    void flush();
     /// After `steps` steps; written if steps is a multiple of hash_interval or `last`.
     static bool wants_hash(std::int64_t steps) { return steps % hash_interval == 0; }
     void hash(std::int64_t steps, const World::StateHash& hash);

@@ -1,0 +1,527 @@
+#include "play/play_app.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "core/errors.h"
+#include "core/log.h"
+#include "hud/hud.h"
+#include "hud/ui_context.h"
+#include "play/earlier_trials.h"
+#include "scene/load_scene.h"
+
+namespace cathlab::play {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double frame_s = 1.0 / 60.0;
+constexpr std::size_t most_latencies = 20000;
+
+WindowOptions window_options(const PlayOptions& options, const Settings& settings) {
+    WindowOptions out = options.window;
+    out.title = "cathlab";
+    out.fullscreen = out.fullscreen || settings.view.fullscreen;
+    return out;
+}
+
+}  // namespace
+
+PlayApp::PlayApp(PlayOptions options, const AppContext& context)
+    : options_(std::move(options)),
+      context_(context),
+      settings_([&] {
+          LoadedSettings loaded = load_settings(options_.settings);
+          settings_fault_ = loaded.message;
+          return loaded.settings;
+      }()),
+      window_(window_options(options_, settings_)),
+      pads_(data_home()),
+      loader_(context),
+      choices_(find_choices(context.data_root)) {
+    if (!options_.silent) tones_.emplace();
+    for (const std::string& note : {settings_fault_, window_.note(), pads_.fault(), tones_ ? tones_->fault() : ""})
+        if (!note.empty()) {
+            say(note);
+            log::warn(note);
+        }
+    if (options_.replay.empty()) {
+        setup_ = setup_of(load_scene(options_.scene, options_.overlays, context.data_root));
+        if (!options_.task.empty()) {
+            const TaskFile task = find_task(options_.task, context.data_root);
+            if (options_.at_once)
+                setup_.task = task.id;
+            else
+                propose(task, setup_);
+        } else if (!options_.at_once && !choices_.tasks.empty()) {
+            for (const TaskFile& task : choices_.tasks)
+                if (task.id == "first-steps") propose(task, setup_);
+        }
+        setup_.difficulty = options_.difficulty.value_or(Difficulty::guided);
+    }
+    lay_out();
+    if (options_.at_once || !options_.replay.empty()) begin_load(options_.out);
+}
+
+PlayApp::~PlayApp() {
+    painter_.reset();
+    sim_.reset();
+}
+
+void PlayApp::say(const std::string& text, double shown_s) {
+    if (text.empty()) return;
+    said_.push_back(text);
+    for (Toast& toast : toasts_) {
+        if (toast.text != text) continue;
+        toast.until_s = now_s_ + shown_s;
+        return;
+    }
+    toasts_.push_back({text, now_s_ + shown_s});
+    if (toasts_.size() > 4) toasts_.erase(toasts_.begin());
+}
+
+void PlayApp::begin_load(const std::string& folder) {
+    LoadRequest request;
+    request.setup = asked_ = setup_;
+    request.run = settings_.run;
+    request.run.record = settings_.run.record && options_.record;
+    request.folder = folder;
+    request.replay = options_.replay;
+    screen_ = Screen::loading;
+    panels_.clear();
+    loader_.start(request, options_.threaded);
+}
+
+void PlayApp::begin_session(std::unique_ptr<Simulation> simulation) {
+    simulation->pilot().set_follows(inner_allowed());
+    if (!simulation->recording_fault().empty()) say(simulation->recording_fault());
+    sim_ = std::make_unique<SimThread>(std::move(simulation), options_.threaded);
+    painter_ = std::make_unique<Painter>(sim_->shots(), options_.threaded, [] { return make_gl_target(); });
+    fluoroscopy_ = inner_ = kept_ = Image8();
+    stamps_.clear();
+    input_.release_keys();
+    screen_ = Screen::play;
+    panels_.clear();
+    side_is_kept_ = !inner_allowed();
+    if (!options_.replay.empty()) return;
+    if (!setup_.task.empty())
+        for (const TaskFile& task : choices_.tasks)
+            if (task.id == setup_.task) say(task.task.instructions, 10.0);
+    say("X-rays: " + settings_.bindings.labels(Control::fluoroscopy, pads_.any()) +
+        "   push: " + settings_.bindings.labels(Control::advance, pads_.any()) +
+        "   all controls: " + settings_.bindings.labels(Control::help, false));
+}
+
+void PlayApp::make_result(Simulation& simulation, bool reached) {
+    result_ = {};
+    result_.metrics = simulation.metrics();
+    result_.course = simulation.course();
+    result_.dt = simulation.dt();
+    result_.folder = simulation.recording_fault().empty() ? simulation.folder() : "";
+    result_.title = "Free play";
+    for (const TaskFile& task : choices_.tasks)
+        if (task.id == asked_.task) result_.title = task.title;
+    result_.score = simulation.score();
+    if (asked_.task.empty())
+        result_.outcome = "Ended.";
+    else if (reached)
+        result_.outcome = "Reached.";
+    else
+        result_.outcome = simulation.goal().outcome == GoalTracker::Outcome::out_of_time ? "The time is over."
+                                                                                         : "Ended before the goal.";
+    if (!asked_.task.empty() && !result_.folder.empty()) {
+        if (Recorder* recorder = simulation.recorder())
+            recorder->file("result.json", result_json(asked_.task, difficulty_name(asked_.difficulty), reached,
+                                                      result_.score.value_or(0.0), result_.metrics));
+        result_.earlier = earlier_trials(fs::path(result_.folder).parent_path().string(), asked_.task, result_.folder);
+    }
+}
+
+void PlayApp::end_session(bool with_result) {
+    if (!sim_) return;
+    Simulation& simulation = sim_->stop();
+    painter_.reset();
+    const bool reached = simulation.goal().outcome == GoalTracker::Outcome::reached;
+    if (with_result && options_.replay.empty()) make_result(simulation, reached);
+    simulation.finish(true);
+    pads_.rumble(0.0, 0.0);
+    sim_.reset();
+    status_ = {};
+    panels_.clear();
+    toasts_.clear();
+    ui_feed_.release();
+    screen_ = with_result && options_.replay.empty() ? Screen::result : Screen::start;
+    if (!options_.replay.empty()) quit_ = true;
+}
+
+void PlayApp::open(Panel panel) {
+    if (screen_ == Screen::play && panels_.empty() && sim_) {
+        was_paused_ = sim_->paused();
+        sim_->set_paused(true);
+    }
+    panels_.push_back(panel);
+    ui_feed_.release();
+}
+
+void PlayApp::go_on() {
+    if (!panels_.empty()) panels_.pop_back();
+    ui_feed_.release();
+    if (panels_.empty() && sim_) sim_->set_paused(was_paused_);
+}
+
+void PlayApp::follow(Wish wish) {
+    switch (wish) {
+        case Wish::none: break;
+        case Wish::start: begin_load(""); break;
+        case Wish::resume:
+        case Wish::close: go_on(); break;
+        case Wish::save:
+            try {
+                save_settings(settings_, options_.settings);
+                say("settings kept in " + options_.settings);
+            } catch (const UserError& error) {
+                say(error.what());
+            }
+            go_on();
+            break;
+        case Wish::again:
+            end_session(false);
+            begin_load("");
+            break;
+        case Wish::end: end_session(true); break;
+        case Wish::to_start:
+            end_session(false);
+            screen_ = Screen::start;
+            break;
+        case Wish::settings: open(Panel::settings); break;
+        case Wish::help: open(Panel::help); break;
+        case Wish::quit: quit_ = true; break;
+    }
+}
+
+void PlayApp::act(Control control) {
+    switch (control) {
+        case Control::menu: open(Panel::pause); break;
+        case Control::help: open(Panel::help); break;
+        case Control::pause: sim_->set_paused(!sim_->paused()); break;
+        case Control::single_step:
+            if (sim_->paused()) sim_->single_steps(1);
+            break;
+        case Control::slower: sim_->set_time_scale(std::max(0.1, 0.5 * sim_->time_scale())); break;
+        case Control::faster: sim_->set_time_scale(std::min(4.0, 2.0 * sim_->time_scale())); break;
+        case Control::reset:
+            if (options_.replay.empty()) follow(Wish::again);
+            break;
+        case Control::sound:
+            settings_.sound.enabled = !settings_.sound.enabled;
+            say(settings_.sound.enabled ? "Sound on" : "Sound off");
+            break;
+        case Control::fullscreen:
+            settings_.view.fullscreen = !settings_.view.fullscreen;
+            window_.set_fullscreen(settings_.view.fullscreen);
+            break;
+        case Control::view:
+            if (inner_allowed()) side_is_kept_ = !side_is_kept_;
+            break;
+        case Control::reference:
+            if (fluoroscopy_.rgb.empty()) {
+                say("there is no picture yet to keep: X-rays first");
+                break;
+            }
+            kept_ = fluoroscopy_;
+            ++kept_revision_;
+            side_is_kept_ = true;
+            break;
+        case Control::screenshot: shot_wanted_ = true; break;
+        default: break;  // the pilot's
+    }
+}
+
+void PlayApp::hands() {
+    const Controls before = evaluated_;
+    evaluated_ = input_.evaluate(settings_);
+    const bool steered = steering();
+    std::array<bool, control_count> pressed{};
+    for (std::size_t i = 0; i < control_count; ++i) {
+        pressed[i] = evaluated_.presses[i] != before.presses[i];
+        if (steered && pressed[i]) ++controls_.presses[i];
+    }
+    const std::array<double, control_count> last = controls_.value;
+    if (steered)
+        controls_.value = evaluated_.value;
+    else
+        controls_.value.fill(0.0);
+    bool changed = controls_.value != last;
+    if (steered) {
+        for (std::size_t i = 0; i < control_count && sim_ && screen_ == Screen::play; ++i) {
+            if (!pressed[i]) continue;
+            changed = true;
+            act(static_cast<Control>(i));
+        }
+    } else if (panel() == Panel::pause && (pressed[static_cast<std::size_t>(Control::menu)] ||
+                                           pressed[static_cast<std::size_t>(Control::pause)])) {
+        go_on();
+    } else if (panel() == Panel::help &&
+               (pressed[static_cast<std::size_t>(Control::help)] || pressed[static_cast<std::size_t>(Control::menu)])) {
+        go_on();
+    } else if (panel() == Panel::settings && pressed[static_cast<std::size_t>(Control::menu)] &&
+               !settings_view_.listening && !ui_->wants_text()) {
+        go_on();
+    }
+    if (!sim_) return;
+    if (changed && stamps_.size() < 64) stamps_.emplace_back(++stamp_, Clock::now());
+    sim_->post(controls_, settings_.input, stamp_);
+}
+
+void PlayApp::feed(const SDL_Event& event) {
+    if (event.type == SDL_QUIT) quit_ = true;
+    if (event.type == SDL_WINDOWEVENT && event.window.event == SDL_WINDOWEVENT_CLOSE) quit_ = true;
+    const std::string note = pads_.feed(event);
+    say(note);
+    ui_feed_.feed(event, 1.0F, 1.0F);
+    input_.feed(event, ui_->wants_mouse(), ui_->wants_text());
+}
+
+void PlayApp::poll() {
+    SDL_Event event;
+    while (SDL_PollEvent(&event) != 0) feed(event);
+    if (stop_wanted()) quit_ = true;
+}
+
+void PlayApp::make_fonts() {
+    const float base = layout_.height / 640.0F * static_cast<float>(settings_.view.hud_scale);
+    const float em = std::clamp(std::min({15.0F * base, layout_.width / 46.0F, layout_.height / 26.0F}), 8.0F, 64.0F);
+    if (!ui_ || std::fabs(em - em_) > 0.5F) {
+        em_ = em;
+        ui_ = std::make_unique<UiContext>(em, true);
+        ImGuiStyle& style = ImGui::GetStyle();
+        style.ScaleAllSizes(std::max(0.5F, em / 14.0F));
+        style.WindowRounding = 0.4F * em;
+        style.FrameRounding = 0.25F * em;
+    }
+    layout_.em = ui_->font_px();
+    const auto column = layout_.width - static_cast<float>(layout_.fluoroscopy.width);
+    const float scale = std::clamp(std::min(base, std::max(1.0F, column) / 230.0F), 0.5F, 4.0F);
+    if (!hud_ || std::fabs(scale - hud_scale_) > 0.02F) {
+        hud_scale_ = scale;
+        hud_ = std::make_unique<Hud>(scale);
+    }
+}
+
+void PlayApp::lay_out() {
+    const int w = window_.width(), h = window_.height();
+    layout_.width = static_cast<float>(w);
+    layout_.height = static_cast<float>(h);
+    const int side = std::min(h, static_cast<int>(0.6 * w));
+    layout_.fluoroscopy = {0, (h - side) / 2, side, side};
+    make_fonts();
+    HudLayout hud;
+    hud.width = layout_.width;
+    hud.height = layout_.height;
+    hud.split = static_cast<float>(side);
+    hud.scale = hud_scale_;
+    const float step = 17.0F * hud_scale_;
+    const float bars = force_bar_rect(hud, std::max<std::size_t>(1, status_.panels.forces.size()), 0).y0;
+    const auto free = static_cast<int>(bars - 2.6F * step - 4.0F * hud_scale_ - 3.4F * step);
+    const int column = w - side;
+    const int panel = std::min(std::max(0, free), static_cast<int>(7.4F * layout_.em));
+    const int view = std::max(0, free - panel);
+    layout_.side = view >= 64 && column >= 64 ? FrameRect{side, 0, column, view} : FrameRect{};
+    layout_.panel = column >= 64 && panel >= 32 ? FrameRect{side, view, column, panel} : FrameRect{};
+    if (!painter_) return;
+    const auto most = static_cast<double>(settings_.view.largest_picture);
+    PaintSizes sizes;
+    sizes.width[0] = sizes.height[0] = std::max(64, std::min(side, static_cast<int>(most)));
+    if (layout_.side.width > 0 && inner_allowed()) {
+        const double shrink = std::min(1.0, most / std::max(layout_.side.width, layout_.side.height));
+        sizes.width[1] = std::max(64, static_cast<int>(shrink * layout_.side.width));
+        sizes.height[1] = std::max(64, static_cast<int>(shrink * layout_.side.height));
+    }
+    painter_->wish(sizes);
+}
+
+void PlayApp::take_pictures() {
+    if (!painter_) return;
+    if (const std::string fault = painter_->fault(); !fault.empty()) say(fault);
+    std::uint64_t stamp = 0;
+    if (painter_->take(View::inner, inner_, stamp)) {
+        ++inner_revision_;
+        while (!stamps_.empty() && stamps_.front().first <= stamp) {
+            latency_s_ = std::chrono::duration<double>(Clock::now() - stamps_.front().second).count();
+            if (latencies_ms_.size() < most_latencies) latencies_ms_.push_back(static_cast<float>(1e3 * latency_s_));
+            stamps_.erase(stamps_.begin());
+        }
+    }
+    if (painter_->take(View::fluoroscopy, fluoroscopy_, stamp)) ++fluoroscopy_revision_;
+}
+
+void PlayApp::draw_screens(double dt) {
+    ui_->begin(layout_.width, layout_.height, static_cast<float>(dt), ui_feed_.take());
+    if (screen_ == Screen::play) {
+        PlayView view;
+        view.status = status_;
+        view.difficulty = setup_.difficulty;
+        view.side_title = layout_.side.width == 0 ? "" : side_is_kept_ ? "kept picture" : "inner view";
+        view.hands_open = hands_open_;
+        view.recording = status_.recording_fault.empty() && !loader_.folder().empty();
+        view.replay = !options_.replay.empty();
+        view.latency_ms = 1e3 * latency_s_;
+        view.replay_s = static_cast<double>(status_.replay_steps) *
+                        (status_.steps > 0 ? status_.channels.time_s / static_cast<double>(status_.steps) : 0.02);
+        for (const Toast& toast : toasts_) view.toasts.push_back(toast.text);
+        PlayWishes wishes;
+        wishes.press = [&](Control control) { input_.press(control); };
+        wishes.hold = [&](Control control, double value) { input_.hold(control, value); };
+        wishes.turn_to = [&](double primary, double secondary) {
+            if (sim_) sim_->between_steps([&](Simulation& s) { s.pilot().turn_to(primary, secondary); });
+        };
+        wishes.seek = [&](std::int64_t step) {
+            if (sim_ && step > status_.steps) sim_->run_to(step);
+        };
+        draw_play(view, layout_, settings_.bindings, wishes);
+        if (wishes.menu && panels_.empty()) open(Panel::pause);
+        if (wishes.hands) hands_open_ = !hands_open_;
+    }
+    Wish wish = Wish::none;
+    switch (panel()) {
+        case Panel::pause: wish = draw_pause(layout_, !options_.replay.empty()); break;
+        case Panel::settings: wish = draw_settings(settings_, settings_view_, input_, layout_); break;
+        case Panel::help: wish = draw_help(settings_.bindings, layout_); break;
+        case Panel::none:
+            if (screen_ == Screen::start) wish = draw_start(setup_, choices_, context_.data_root, layout_);
+            if (screen_ == Screen::loading) draw_loading(loader_.fraction(), loader_.what(), layout_);
+            if (screen_ == Screen::result) wish = draw_result(result_, layout_);
+            break;
+    }
+    if (screen_ != Screen::play) {
+        PlayView view;
+        for (const Toast& toast : toasts_) view.toasts.push_back(toast.text);
+        ScreenLayout top = layout_;
+        top.fluoroscopy = {0, 0, static_cast<int>(layout_.width), static_cast<int>(layout_.height + 5.3F * layout_.em)};
+        top.panel = top.side = {};
+        PlayWishes none;
+        draw_play(view, top, settings_.bindings, none);
+    }
+    ui_->end(ui_list_);
+    follow(wish);
+}
+
+void PlayApp::compose() {
+    pictures_.clear();
+    lists_.clear();
+    if (screen_ == Screen::play) {
+        pictures_.push_back({&fluoroscopy_, layout_.fluoroscopy, fluoroscopy_revision_});
+        if (side_is_kept_) {
+            const FrameRect& place = layout_.side;
+            const int side = std::min(place.width, place.height);
+            pictures_.push_back({&kept_, {place.x + (place.width - side) / 2, place.y, side, side}, kept_revision_});
+        } else {
+            pictures_.push_back({&inner_, layout_.side, inner_revision_});
+        }
+        HudData panels = status_.panels;
+        panels.running = !status_.paused;
+        panels.real_time_factor = status_.real_time_factor;
+        HudLayout hud;
+        hud.width = layout_.width;
+        hud.height = layout_.height;
+        hud.split = static_cast<float>(layout_.fluoroscopy.width);
+        hud_->draw(panels, hud, hud_list_);
+        lists_.push_back(&hud_list_);
+    }
+    lists_.push_back(&ui_list_);
+}
+
+void PlayApp::draw_window() {
+    compose();
+    window_.draw(pictures_, lists_);
+    if (shot_wanted_) screenshot();
+    window_.show();
+}
+
+Image8 PlayApp::picture() {
+    Image8 out;
+    window_.draw(pictures_, lists_);
+    window_.read(out);
+    return out;
+}
+
+void PlayApp::screenshot() {
+    shot_wanted_ = false;
+    try {
+        Image8 picture;
+        window_.read(picture);
+        std::string folder = loader_.folder();
+        if (folder.empty()) folder = data_home();
+        std::error_code error;
+        fs::create_directories(folder, error);
+        std::string path;
+        for (int i = 1; path.empty() || fs::exists(path, error); ++i)
+            path = folder + "/screenshot-" + std::to_string(i) + ".png";
+        write_png(path, picture);
+        say("saved " + path);
+    } catch (const UserError& error) {
+        say(error.what());
+    }
+}
+
+bool PlayApp::frame(double dt) {
+    now_s_ += dt;
+    std::erase_if(toasts_, [&](const Toast& toast) { return toast.until_s < now_s_; });
+    poll();
+    if (quit_) return false;
+    if (screen_ == Screen::loading && !loader_.busy()) {
+        auto simulation = loader_.take();
+        say(loader_.error());
+        if (simulation) {
+            begin_session(std::move(simulation));
+        } else {
+            log::error(loader_.error());
+            if (options_.at_once || !options_.replay.empty()) throw UserError(loader_.error());
+            screen_ = Screen::start;
+        }
+    }
+    hands();
+    if (sim_) {
+        if (!options_.threaded) sim_->run_for(dt);
+        const std::string fault = status_.recording_fault;
+        status_ = sim_->status();
+        if (status_.recording_fault != fault) say(status_.recording_fault);
+        if (!status_.fault.empty()) say("the simulation has stopped: " + status_.fault);
+    }
+    lay_out();
+    if (painter_ && !options_.threaded) painter_->paint();
+    take_pictures();
+    if (screen_ == Screen::play && status_.over && options_.replay.empty()) end_session(true);
+    if (window_.minimised()) {
+        ui_feed_.take();
+    } else {
+        draw_screens(dt);
+        draw_window();
+    }
+    const bool live = screen_ == Screen::play && !status_.paused;
+    const Tremble tremble = live ? tremble_of(status_.channels.force_bar, settings_.input.rumble, now_s_) : Tremble{};
+    pads_.rumble(tremble.low, tremble.high);
+    if (tones_) {
+        ToneState tone;
+        tone.beam_on = live && status_.channels.beam_on > 0.5;
+        tone.force_bar = live ? status_.channels.force_bar : 0.0;
+        tones_->play(tone, settings_.sound);
+    }
+    return !quit_;
+}
+
+void PlayApp::run() {
+    auto last = Clock::now();
+    for (;;) {
+        const auto begin = Clock::now();
+        if (!frame(std::chrono::duration<double>(begin - last).count())) break;
+        last = begin;
+        const double spent = std::chrono::duration<double>(Clock::now() - begin).count();
+        if (spent < frame_s) std::this_thread::sleep_for(std::chrono::duration<double>(frame_s - spent));
+    }
+    end_session(false);
+}
+
+}  // namespace cathlab::play

@@ -1,0 +1,149 @@
+// The trainer: screens, window, hands, simulation, pictures and sound, one turn after another.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "context.h"
+#include "hud/hud.h"
+#include "hud/ui_context.h"
+#include "play/input_state.h"
+#include "play/loader.h"
+#include "play/pads.h"
+#include "play/painter.h"
+#include "play/screens.h"
+#include "play/settings.h"
+#include "play/tones.h"
+#include "play/ui_feed.h"
+#include "play/window.h"
+
+namespace cathlab::play {
+
+struct PlayOptions {
+    std::string scene;  ///< a path
+    std::vector<std::string> overlays;
+    std::string task;      ///< id, "" = free play
+    bool at_once = false;  ///< without the start screen
+    std::string out;       ///< the first session's run folder, "" = a new one in the user's data folder
+    std::string replay;    ///< a run folder to be shown, "" = none
+    std::optional<Difficulty> difficulty;
+    WindowOptions window;
+    std::string settings;  ///< the file, "" = nowhere
+    bool record = true;    ///< false: whatever the settings say
+    bool threaded = true;  ///< false: everything happens within frame(), for tests
+    bool silent = false;   ///< no sound device is opened
+};
+
+enum class Screen { start, loading, play, result };
+enum class Panel { none, pause, settings, help };
+
+class PlayApp {
+public:
+    /// Throws UserError where there is no window to be had, or the scene cannot be read.
+    PlayApp(PlayOptions options, const AppContext& context);
+    ~PlayApp();
+    PlayApp(const PlayApp&) = delete;
+    PlayApp& operator=(const PlayApp&) = delete;
+
+    /// One turn that stands for dt seconds: events, time, pictures, window.  False = the end.
+    bool frame(double dt);
+    /// Turns until the end, at most 60 a second.
+    void run();
+
+    /// What the window shows, as a picture.
+    Image8 picture();
+
+    Screen screen() const { return screen_; }
+    Panel panel() const { return panels_.empty() ? Panel::none : panels_.back(); }
+    void open(Panel panel);
+    /// Closes the panel on top; without any, time goes on.
+    void go_on();
+    /// Of the settings: 0 hands, 1 keys, 2 view and sound, 3 recording.
+    void select_tab(int tab) { settings_view_.tab = tab; }
+    void open_hands(bool yes) { hands_open_ = yes; }
+    Window& window() { return window_; }
+    Settings& settings() { return settings_; }
+    Setup& setup() { return setup_; }
+    SimThread* simulation() { return sim_.get(); }
+    Painter* painter() { return painter_.get(); }
+    const ScreenLayout& layout() const { return layout_; }
+    const std::vector<std::string>& said() const { return said_; }  ///< every toast so far
+    const ResultView& result() const { return result_; }
+    std::string run_folder() const { return loader_.folder(); }
+    /// Time from a hand's command to the picture that shows it, s; the newest, 0 = none yet.
+    double latency_s() const { return latency_s_; }
+    const std::vector<float>& latencies_ms() const { return latencies_ms_; }
+
+private:
+    struct Toast {
+        std::string text;
+        double until_s = 0.0;
+    };
+
+    void begin_load(const std::string& folder);
+    void begin_session(std::unique_ptr<Simulation> simulation);
+    void end_session(bool with_result);
+    void make_result(Simulation& simulation, bool reached);
+    void poll();
+    void feed(const SDL_Event& event);
+    void hands();
+    void act(Control control);
+    void follow(Wish wish);
+    void lay_out();
+    void make_fonts();
+    void take_pictures();
+    void draw_screens(double dt);
+    void compose();
+    void draw_window();
+    void note_latency();
+    void say(const std::string& text, double shown_s = 5.0);
+    void screenshot();
+    bool steering() const { return screen_ == Screen::play && panels_.empty(); }
+    bool inner_allowed() const { return setup_.difficulty != Difficulty::exam; }
+
+    PlayOptions options_;
+    const AppContext& context_;
+    std::string settings_fault_;
+    Settings settings_;
+    Window window_;
+    Pads pads_;
+    std::optional<Tones> tones_;
+    Loader loader_;
+    Choices choices_;
+    Setup setup_, asked_;  // asked_: of the session that goes on
+
+    std::unique_ptr<UiContext> ui_;
+    std::unique_ptr<Hud> hud_;
+    float em_ = 0.0F, hud_scale_ = 0.0F;
+    UiFeed ui_feed_;
+    InputState input_;
+    Controls evaluated_, controls_;
+    std::uint64_t stamp_ = 0;
+    std::vector<std::pair<std::uint64_t, Clock::time_point>> stamps_;  // commands whose picture has not come
+    double latency_s_ = 0.0;
+    std::vector<float> latencies_ms_;
+
+    Screen screen_ = Screen::start;
+    std::vector<Panel> panels_;
+    bool quit_ = false, hands_open_ = false, side_is_kept_ = false, was_paused_ = false;
+    SettingsView settings_view_;
+    ResultView result_;
+    double now_s_ = 0.0;
+    std::vector<Toast> toasts_;
+    std::vector<std::string> said_;
+
+    std::unique_ptr<SimThread> sim_;
+    std::unique_ptr<Painter> painter_;
+    Status status_;
+    Image8 fluoroscopy_, inner_, kept_;
+    std::uint64_t fluoroscopy_revision_ = 0, inner_revision_ = 0, kept_revision_ = 0;
+    ScreenLayout layout_;
+    HudDrawList hud_list_, ui_list_;
+    std::vector<WindowPicture> pictures_;
+    std::vector<const HudDrawList*> lists_;
+    bool shot_wanted_ = false;
+};
+
+}  // namespace cathlab::play

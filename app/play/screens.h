@@ -1,0 +1,102 @@
+// The screens, in ImGui calls alone: each shows plain data and says what was asked for.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "play/input_state.h"
+#include "play/setup.h"
+#include "play/sim_thread.h"
+#include "render/frame_renderer.h"
+
+namespace cathlab::play {
+
+/// Where things stand in the window, pixels.
+struct ScreenLayout {
+    float width = 1280, height = 720;
+    FrameRect fluoroscopy, side;  ///< side: inner view or kept picture
+    FrameRect panel;              ///< between it and the force bars
+    float em = 16;                ///< height of the text
+};
+
+/// What a menu's button asks for.
+enum class Wish {
+    none,
+    start,
+    resume,
+    again,
+    end,  ///< the session, with its result
+    to_start,
+    settings,
+    help,
+    quit,
+    save,
+    close
+};
+
+/// One column of big buttons begins the window of a menu; its size follows its content.
+void begin_menu(const char* title, const ScreenLayout& layout, float width_em, float height_em = 0.0F);
+void end_menu();
+/// A wide button; `first`: where keys and pad begin.
+bool menu_button(const char* text, float width_em, bool first = false);
+
+Wish draw_start(Setup& setup, const Choices& choices, const std::string& data_root, const ScreenLayout& layout);
+void draw_loading(double fraction, const std::string& what, const ScreenLayout& layout);
+Wish draw_pause(const ScreenLayout& layout, bool replay);
+
+/// Buttons of the panel beside the picture that act on a session.
+struct PlayWishes {
+    std::function<void(Control)> press;
+    std::function<void(Control, double)> hold;
+    std::function<void(double primary_deg, double secondary_deg)> turn_to;
+    std::function<void(std::int64_t step)> seek;
+    bool menu = false, hands = false;
+};
+struct PlayView {
+    Status status;
+    Difficulty difficulty = Difficulty::standard;
+    std::string task;        ///< its instructions, "" = none
+    std::string side_title;  ///< of the view beside the fluoroscopy
+    bool hands_open = false;
+    bool recording = false, replay = false;
+    double latency_ms = 0.0;
+    std::vector<std::string> toasts;
+    double replay_s = 0.0;
+};
+void draw_play(const PlayView& view, const ScreenLayout& layout, const Bindings& bindings, PlayWishes& wishes);
+
+/// What the result screen shows.
+struct ResultView {
+    std::string title, folder;
+    std::optional<double> score;
+    std::string outcome;
+    Metrics metrics;
+    Course course;
+    double dt = 0.02;
+    struct Earlier {
+        std::string name;
+        double score = 0.0, play_time_s = 0.0, force_bar_max = 0.0, fluoroscopy_time_s = 0.0;
+    };
+    std::vector<Earlier> earlier;  ///< newest first
+};
+Wish draw_result(const ResultView& view, const ScreenLayout& layout);
+
+/// The table of bindings as the trainee reads it.
+Wish draw_help(const Bindings& bindings, const ScreenLayout& layout);
+
+/// The settings' panel; changes `settings` at once.
+struct SettingsView {
+    std::optional<Control> listening;  ///< waits for a place for this control
+    bool negative = false;             ///< ... for its other way
+    std::string note;
+    int tab = -1;  ///< to be opened now; -1 = as it stands
+};
+Wish draw_settings(Settings& settings, SettingsView& view, InputState& input, const ScreenLayout& layout);
+
+/// A short line plot of one value a sample, with a line at `mark` where that is in range.
+void draw_plot(const char* label, const std::vector<float>& values, float top, float mark, float width, float height,
+               const std::string& left, const std::string& right);
+
+}  // namespace cathlab::play

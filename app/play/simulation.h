@@ -1,0 +1,110 @@
+// A session of the trainer without its window: the world, the hands' pilot, the recording, the task.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "context.h"
+#include "describe_frame.h"
+#include "hud/hud_data.h"
+#include "message_lines.h"
+#include "play/pilot.h"
+#include "play/recorder.h"
+#include "record/run_reader.h"
+#include "session.h"
+#include "task/metrics.h"
+#include "task/task.h"
+
+namespace cathlab::play {
+
+struct SimulationOptions {
+    SceneSpec scene;
+    std::optional<TaskSpec> task;
+    std::optional<RecorderOptions> recorder;  ///< nothing = not recorded
+    std::optional<RunRecord> replay;          ///< nothing = played by hand
+    int threads = 1;
+};
+
+/// What the goal looks like now.
+struct GoalView {
+    bool present = false;
+    Vec3 position = Vec3::Zero();
+    double radius_mm = 0.0, distance_mm = 0.0, held_s = 0.0, hold_s = 0.0, left_s = 0.0;
+    bool inside = false;
+    GoalTracker::Outcome outcome = GoalTracker::Outcome::open;
+};
+
+/// One sample a step, for the result's plots.
+struct Course {
+    std::vector<float> force_bar;  ///< 1 = the limit
+    std::vector<float> force_n;
+    std::vector<Vec3> tip;
+};
+
+class Simulation {
+public:
+    /// Throws UserError.  A recording that cannot be begun is said in recording_fault() and the session goes on.
+    Simulation(SimulationOptions options, const SceneModels& models, const AppContext& context);
+    ~Simulation();
+
+    /// One step under the hands' command, or the next of the replay.
+    void step(const Controls& controls, const InputSettings& settings);
+    /// Whether the task, or the replay, has come to its end.
+    bool over() const;
+
+    Pilot& pilot() { return pilot_; }
+    const Pilot& pilot() const { return pilot_; }
+    Session& session() { return session_; }
+    const Channels& channels() const { return session_.channels(); }
+    const Input& input() const { return input_; }
+    std::int64_t steps() const { return steps_; }
+    std::int64_t replay_steps() const { return options_.replay ? options_.replay->steps : 0; }
+    double dt() const { return session_.dt(); }
+    const SceneSpec& scene() const { return options_.scene; }
+    const GoalView& goal() const { return goal_; }
+    const Course& course() const { return course_; }
+    Metrics metrics() const { return metrics_.result(); }
+    std::optional<double> score() const;
+    /// X-ray pulses so far: a new fluoroscopy is due with each.
+    std::uint64_t pulses() const { return pulses_; }
+
+    /// Fills everything but sizes and overlay, as Film does.
+    void describe(FrameDescription& frame);
+    /// Everything but frames a second and the real-time factor.
+    void fill_panels(HudData& out);
+
+    void flush();
+    /// Closes the recording.  Once; the destructor does it as incomplete.
+    void finish(bool complete);
+    std::string folder() const { return recorder_ ? recorder_->folder() : ""; }
+    std::string recording_fault() const { return recorder_ ? recorder_->fault() : fault_; }
+    Recorder* recorder() { return recorder_ ? &*recorder_ : nullptr; }
+
+private:
+    void follow_goal();
+
+    SimulationOptions options_;
+    Session session_;
+    Pilot pilot_;
+    std::optional<Recorder> recorder_;
+    std::string fault_;
+    std::optional<GoalTracker> tracker_;
+    Vec3 goal_at_rest_ = Vec3::Zero();
+    std::size_t goal_vertex_ = 0;
+    GoalView goal_;
+    MetricsAccumulator metrics_;
+    Course course_;
+    MessageLines messages_;
+    FrameMemory memory_;
+    std::optional<FrameCamera> camera_;
+    Input input_;
+    std::int64_t steps_ = 0;
+    std::uint64_t pulses_ = 0;
+    bool finished_ = false;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();  // for the manifest alone
+};
+
+}  // namespace cathlab::play

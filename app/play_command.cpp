@@ -1,0 +1,84 @@
+// cathlab play: the trainer's window.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "commands.h"
+#include "core/csv.h"
+#include "core/errors.h"
+#include "play/play_app.h"
+#include "play/tour.h"
+#include "scene/load_scene.h"
+
+namespace cathlab {
+namespace {
+
+struct PlayArguments {
+    std::string scene, size;
+    std::string difficulty, tour;
+    play::PlayOptions options;
+    bool print_config = false, no_record = false;
+};
+
+void read_size(const std::string& text, play::WindowOptions& window) {
+    const std::string_view size(text);
+    const auto cross = size.find('x');
+    const auto width = parse_number<int>(size.substr(0, cross));
+    const auto height = cross == std::string_view::npos ? std::nullopt : parse_number<int>(size.substr(cross + 1));
+    if (!width || !height || *width < 64 || *height < 64 || *width > 16384 || *height > 16384)
+        throw UserError("--size '" + text + "': WxH is wanted, 64x64 to 16384x16384", true);
+    window.width = *width;
+    window.height = *height;
+}
+
+void run_play(PlayArguments& arguments, AppContext& context) {
+    play::PlayOptions& options = arguments.options;
+    if (options.settings.empty()) options.settings = play::settings_path();
+    if (arguments.print_config) {
+        std::fputs(settings_toml(play::read_or_default(options.settings)).c_str(), stdout);
+        return;
+    }
+    if (!arguments.size.empty()) read_size(arguments.size, options.window);
+    options.record = !arguments.no_record;
+    options.at_once = !arguments.scene.empty();
+    if (options.replay.empty())
+        options.scene = find_scene(arguments.scene.empty() ? "training" : arguments.scene, context.data_root);
+    if (arguments.difficulty == "guided") options.difficulty = play::Difficulty::guided;
+    if (arguments.difficulty == "standard") options.difficulty = play::Difficulty::standard;
+    if (arguments.difficulty == "exam") options.difficulty = play::Difficulty::exam;
+    catch_stop_signals();
+    if (!arguments.tour.empty()) {
+        play::tour(options, context, arguments.tour);
+        return;
+    }
+    play::PlayApp app(options, context);
+    app.run();
+    for (const std::string& text : app.said()) std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+}  // namespace
+
+void add_play_command(CLI::App& app, AppContext& context) {
+    const auto arguments = std::make_shared<PlayArguments>();
+    play::PlayOptions& options = arguments->options;
+    CLI::App* command = app.add_subcommand("play", "The trainer: a window, a gamepad or a keyboard");
+    command->add_option("SCENE", arguments->scene, "begins with it at once; else a start screen");
+    command->add_option("--task", options.task, "a task of assets/tasks, by its name");
+    command->add_option("--overlay", options.overlays, "a file laid over the scene; may be given again")
+        ->allow_extra_args(false);
+    command->add_option("--difficulty", arguments->difficulty, "how much help there is")
+        ->check(CLI::IsMember({"guided", "standard", "exam"}));
+    command->add_option("--out", options.out, "the run folder of the first session; else a new one of the user's");
+    command->add_flag("--no-record", arguments->no_record, "keep nothing");
+    command->add_option("--replay", options.replay, "shows a recorded run, with a time line");
+    command->add_option("--size", arguments->size, "of the window, WxH");
+    command->add_flag("--fullscreen", options.window.fullscreen, "the whole screen");
+    command->add_option("--config", options.settings, "the settings' file; else play.toml in the user's settings");
+    command->add_flag("--print-config", arguments->print_config, "print the settings with their meaning, and end");
+    command->add_flag("--no-gl", options.window.plain, "draw the window without OpenGL");
+    command->add_flag("--no-sound", options.silent, "open no loudspeaker");
+    command->add_option("--tour", arguments->tour,
+                        "walks through every screen without a display; pictures into a folder");
+    command->callback([arguments, &context] { run_play(*arguments, context); });
+}
+
+}  // namespace cathlab
