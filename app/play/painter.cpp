@@ -80,7 +80,13 @@ void Painter::paint_view(View view, Shot& shot, const PaintSizes& sizes) {
     frame.show_inner_view = view == View::inner;
     frame.overlay = {};
     const auto begin = Clock::now();
-    renderer_->render(frame, drawn_[i]);
+    try {
+        renderer_->render(frame, drawn_[i]);
+    } catch (const std::exception& error) {  // one picture is lost, not the session
+        const std::lock_guard lock(mutex_);
+        fault_ = std::string("a picture could not be drawn: ") + error.what();
+        return;
+    }
     cost_ms_[i] = 1e3 * std::chrono::duration<double>(Clock::now() - begin).count();
     const std::lock_guard lock(mutex_);
     if (observer_) observer_(view, frame, drawn_[i]);

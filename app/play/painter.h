@@ -41,7 +41,7 @@ public:
 
     /// Swaps in the newest picture of a view; false where there is none newer.  stamp: of the hands' command in it.
     bool take(View view, Image8& picture, std::uint64_t& stamp);
-    /// "" or why nothing is drawn any more.
+    /// "" or why a picture could not be drawn.
     std::string fault() const;
     /// Milliseconds that the last picture of a view took.
     double cost_ms(View view) const { return cost_ms_[static_cast<std::size_t>(view)]; }

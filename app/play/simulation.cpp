@@ -1,6 +1,8 @@
 #include "play/simulation.h"
 
+#include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "beam/exposure.h"
 #include "core/errors.h"
@@ -66,6 +68,8 @@ void Simulation::step(const Controls& controls, const InputSettings& settings) {
     if (recorder_) recorder_->after();
     for (const Event& event : session_.events()) messages_.add(event);
     const Channels& c = channels();
+    if (!std::isfinite(c.wire_tip_x_mm + c.catheter_tip_x_mm + c.wall_displacement_max_mm))
+        throw std::runtime_error("its numbers are no longer finite; begin again");
     if (c.beam_on > 0.5 && pulse_in_step(before, session_.dt(), options_.scene.c_arm.frame_rate)) ++pulses_;
     metrics_.add(c, session_.dt());
     course_.force_bar.push_back(static_cast<float>(c.force_bar));

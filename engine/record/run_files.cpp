@@ -16,7 +16,6 @@ namespace cathlab {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::uint64_t most_log_bytes = 4ULL << 30U;
 constexpr std::array run_file_names{"manifest.json", "inputs.jsonl", "trace.csv",  "events.jsonl",
                                     "hashes.csv",    "metrics.json", "poster.png", "fluoro.mp4",
                                     "fluoro.avi",    "labels.json",  "report.html"};

@@ -16,7 +16,8 @@
 
 namespace cathlab {
 
-inline constexpr std::int64_t hash_interval = 50;  ///< steps
+inline constexpr std::int64_t hash_interval = 50;             ///< steps
+inline constexpr std::uint64_t most_log_bytes = 4ULL << 30U;  ///< of a table that is read back
 
 /// Writes NAME.part and renames it to NAME: the final name never holds half a file.  Throws UserError (full disk, ...).
 void write_whole_file(const std::string& path, const std::string& text);

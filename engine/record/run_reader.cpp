@@ -87,10 +87,12 @@ void read_hashes(RunRecord& run) {
     if (where.line == 0) throw UserError(where, "is empty");
 }
 
-// Of a run that broke off: a row is written after the input that led to it.
+// Of a run that broke off: a row is written after the input that led to it.  Where the inputs end in the middle of a
+// line, the system itself went down, and nothing is known of the order in which it wrote.
 std::int64_t trace_rows(const std::string& folder) {
     const std::string path = folder + "/trace.csv";
-    if (!std::filesystem::exists(path)) return 0;
+    const std::string inputs = read_text_file(folder + "/inputs.jsonl", most_log_bytes);
+    if (!std::filesystem::exists(path) || !inputs.ends_with('\n')) return 0;
     return std::max<std::int64_t>(0, static_cast<std::int64_t>(read_lines(path, false).size()) - 1);
 }
 
