@@ -6,12 +6,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "bench_samples.h"
 #include "bench_wall.h"
 #include "commands.h"
 #include "core/errors.h"
@@ -22,7 +22,6 @@
 namespace cathlab {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t particles = 10'000;
@@ -32,23 +31,6 @@ struct WallBenchOptions {
     int threads = 3;
     bool json = false;
     bool quick = false;
-};
-
-/// Samples of one thing, ms.
-class Samples {
-public:
-    void add(double ms) { ms_.push_back(ms); }
-    double median() { return quantile(0.5); }
-    double p99() { return quantile(0.99); }
-    Json json() { return {{"median_ms", median()}, {"p99_ms", p99()}, {"count", ms_.size()}}; }
-
-private:
-    double quantile(double share) {
-        std::sort(ms_.begin(), ms_.end());
-        const auto k = static_cast<std::size_t>(share * static_cast<double>(ms_.size()));
-        return ms_.at(std::min(k, ms_.size() - 1));
-    }
-    std::vector<double> ms_;
 };
 
 /// Another process that takes a core for as long as this lives.
@@ -71,13 +53,6 @@ public:
 private:
     pid_t child_;
 };
-
-template <class Work>
-double ms_of(const Work& work) {
-    const auto begin = Clock::now();
-    work();
-    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
 
 /// Turn by turn, so that an hour in which the machine is slow is slow for all of them.
 Json measure_beside_peer(const WallBenchOptions& options, Progress& progress) {
