@@ -125,6 +125,26 @@ struct SceneRig {
     SourcePlace where;
 };
 
+/// [[task.criterion]]: one number of the score.
+struct SceneCriterion {
+    std::string metric;
+    double full = 0.0, none = 1.0, weight = 1.0;
+};
+
+/// [task]: what an operator is to do in this scene, and what it is worth.
+struct SceneTask {
+    std::string landmark;  ///< of the anatomy, where the tip is to go; "" = this scene sets no task
+    std::string device = "wire";
+    std::string instructions;
+    double radius_mm = 5.0;
+    double hold_s = 2.0;
+    double time_limit_s = 300.0;
+    double pass_score = 60.0;
+    bool inner_view = true;  ///< may be looked at
+    std::vector<SceneCriterion> criteria;
+    SourcePlace where;
+};
+
 /// [effects.NAME]: a section switches the effect on unless it says enabled = false.
 struct SceneEffect {
     const EffectInfo* info = nullptr;
@@ -159,6 +179,7 @@ struct SceneSpec {
     SceneContrast contrast;
     SceneForce force;
     SceneRig rig;
+    SceneTask task;
     std::vector<SceneEffect> effects = all_effects_off();  ///< one an entry of effect_table(), in its order
     SceneVideo video;
 

@@ -150,6 +150,29 @@ Table<SceneRig> rig_table() {
         .place(&SceneRig::where);
 }
 
+Table<SceneTask> task_table() {
+    const auto criterion = Table<SceneCriterion>("one number of the score: its part falls from 1 at full to 0 at none")
+                               .text("metric", &SceneCriterion::metric, "cathlab list metrics")
+                               .required()
+                               .number("full", &SceneCriterion::full, "of the metric", {-1e9, 1e9}, "gives all of it")
+                               .required()
+                               .number("none", &SceneCriterion::none, "of the metric", {-1e9, 1e9}, "gives nothing")
+                               .required()
+                               .number("weight", &SceneCriterion::weight, "1", {0, 1000}, "share of the score");
+    return Table<SceneTask>("what an operator is to do in this scene, and what it is worth")
+        .text("landmark", &SceneTask::landmark, "of the anatomy: where the tip is to go")
+        .required()
+        .choice("device", &SceneTask::device, {"wire", "catheter"}, "whose tip counts")
+        .text("instructions", &SceneTask::instructions, "in the trainee's words")
+        .number("radius_mm", &SceneTask::radius_mm, "mm", {0.5, 100}, "of the ball about the landmark that is the goal")
+        .number("hold_s", &SceneTask::hold_s, "s", {0, 60}, "how long the tip stays in it, without a break")
+        .number("time_limit_s", &SceneTask::time_limit_s, "s", {1, 7200}, "from the first step")
+        .number("pass_score", &SceneTask::pass_score, "1", {0, 100}, "score from which on the task is passed")
+        .boolean("inner_view", &SceneTask::inner_view, "the inner view may be looked at")
+        .tables("criterion", &SceneTask::criteria, criterion)
+        .place(&SceneTask::where);
+}
+
 // Sections [effects.NAME] are made at run time from the manifest, one field a Parameter.
 Table<SceneSpec>& add_effects(Table<SceneSpec>& scene) {
     auto effects = std::make_shared<TableSpec>();
@@ -220,6 +243,7 @@ Table<SceneSpec> make_scene_table() {
         .table("contrast", &SceneSpec::contrast, contrast)
         .table("force", &SceneSpec::force, force)
         .table("rig", &SceneSpec::rig, rig_table())
+        .table("task", &SceneSpec::task, task_table())
         .table("video", &SceneSpec::video, video);
     return add_effects(scene);
 }

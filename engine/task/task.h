@@ -29,6 +29,8 @@ struct TaskSpec {
     double radius_mm = 5.0;       ///< the goal region is a ball, > 0
     double hold_s = 2.0;          ///< >= 0, without a break
     double time_limit_s = 300.0;  ///< from the first step, > 0
+    double pass_score = 60.0;     ///< 0 to 100
+    bool inner_view = true;       ///< may be looked at
     std::vector<Criterion> criteria;
 };
 

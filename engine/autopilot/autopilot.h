@@ -1,0 +1,56 @@
+// An operator made of software: it follows the centre-line to a task's goal, steers, and backs off where it meets
+// force, by the same actions as a gamepad.  It reads the world as an observer and never writes to it.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+
+#include "autopilot/skill.h"
+#include "autopilot/way.h"
+#include "core/channels.h"
+#include "core/input.h"
+#include "scene/scene_spec.h"
+#include "task/scene_task.h"
+#include "world/world.h"
+
+namespace cathlab {
+
+class Autopilot {
+public:
+    /// The world must be of this scene, prepared.  Throws UserError where no vessel leads to the goal.  seed: of its
+    /// tremor; the same seed, scene and skill give the same inputs.
+    Autopilot(const World& world, const SceneSpec& scene, const TaskSpec& task, const Skill& skill, std::uint64_t seed);
+
+    /// What it does in the next step; call it once a step.  last: channels of the step before (of none: as they are
+    /// made).
+    Input act(const World& world, const Channels& last, Input base);
+
+private:
+    struct Seen {
+        Channels channels;
+        Vec3 goal;
+    };
+    double noisy(double value, std::uint64_t what) const;
+    void drive(const Vec3& tip, const Vec3& goal, double bar, Input& input);
+    void steer_catheter(const World& world, const Vec3& goal, Input& input);
+    void follow_with_table(const World& world, const Vec3& tip, Input& input) const;
+
+    TaskSpec task_;
+    Skill skill_;
+    std::uint64_t seed_;
+    double dt_;
+    GoalPoint goal_;
+    std::shared_ptr<const AnatomyModel> anatomy_;
+    Way way_;
+    std::deque<Seen> seen_;
+    std::uint64_t step_ = 0;
+    // Where it is in what it does.
+    Vec3 middle_ = Vec3::Zero();  // of the goal's swing
+    double farthest_mm_ = 0.0, stuck_s_ = 0.0, back_mm_ = 0.0;
+    int attempts_ = 0;
+    bool arrived_ = false, near_ = false;
+    Vec2 proximal_ = Vec2::Zero(), distal_ = Vec2::Zero();
+};
+
+}  // namespace cathlab

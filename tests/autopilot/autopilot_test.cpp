@@ -1,0 +1,62 @@
+// The autopilot brings a wire to its goal in a scene, by the actions alone, and does it again to the bit.
+#include "autopilot/autopilot.h"
+
+#include <gtest/gtest.h>
+
+#include "control/simulator.h"
+#include "scene/load_scene.h"
+
+namespace cathlab {
+namespace {
+
+struct Outcome {
+    bool reached = false;
+    double seconds = 0.0, bar = 0.0;
+    std::uint64_t hash = 0;
+};
+
+Outcome fly(const std::string& task_file, const std::string& skill, double most_s) {
+    const std::string root = CATHLAB_SOURCE_DIR;
+    const SceneSpec scene = load_scene(root + "/scenes/tasks/" + task_file, {}, root);
+    Simulator simulator(scene.path, root, testing::TempDir() + "cathlab_cache");
+    simulator.reset(1);
+    const TaskSpec task = *task_of(scene);
+    Autopilot pilot(simulator.world(), scene, task, find_skill(skill), 1);
+    const GoalPoint goal(simulator.world(), task);
+    GoalTracker tracker(task);
+    Outcome out;
+    while (tracker.outcome() == GoalTracker::Outcome::open && out.seconds < most_s) {
+        const Input input = pilot.act(simulator.world(), simulator.channels(), Input{});
+        std::vector<double> action;
+        for (const ActionInfo& info : action_table()) action.push_back(input.*info.value);
+        simulator.step(action, {});
+        tracker.add(simulator.channels(), goal.now(simulator.world()), simulator.dt_s());
+        out.seconds += simulator.dt_s();
+        out.bar = std::max(out.bar, simulator.channels().force_bar);
+    }
+    out.reached = tracker.outcome() == GoalTracker::Outcome::reached;
+    out.hash = simulator.state_hash();
+    return out;
+}
+
+TEST(Autopilot, AnExpertBringsTheWireIntoTheAbdominalAortaUnderTheLimitAndAgainToTheBit) {
+    const Outcome one = fly("a.toml", "expert", 60.0);
+    EXPECT_TRUE(one.reached);
+    EXPECT_LT(one.bar, 1.0);
+    const Outcome two = fly("a.toml", "expert", 60.0);
+    EXPECT_EQ(one.hash, two.hash);
+    EXPECT_EQ(one.seconds, two.seconds);
+}
+
+TEST(Tasks, EveryOneOfTheProjectIsValidAndItsGoalCanBeReachedByVessels) {
+    const std::string root = CATHLAB_SOURCE_DIR;
+    for (const std::string& name : names_in_folder(root + "/scenes/tasks", ".toml")) {
+        const SceneSpec scene = load_scene(root + "/scenes/tasks/" + name + ".toml", {}, root);
+        ASSERT_TRUE(task_of(scene)) << name;
+        EXPECT_FALSE(task_of(scene)->instructions.empty()) << name;
+        EXPECT_FALSE(task_of(scene)->criteria.empty()) << name;
+    }
+}
+
+}  // namespace
+}  // namespace cathlab
