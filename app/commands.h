@@ -13,6 +13,10 @@ class App;
 namespace cathlab {
 
 void add_run_command(CLI::App& app, AppContext& context);
+/// `score`: metrics and score of recorded runs, recomputed.
+void add_score_command(CLI::App& app, AppContext& context);
+/// `study`: a user study from its protocol to its report.
+void add_study_command(CLI::App& app, AppContext& context);
 void add_replay_command(CLI::App& app, AppContext& context);
 /// `render`: the pictures of a recorded run again, from elsewhere.
 void add_render_command(CLI::App& app, AppContext& context);

@@ -39,6 +39,8 @@ int run_program(int argc, char** argv) {
     });
     add_run_command(app, context);
     add_replay_command(app, context);
+    add_score_command(app, context);
+    add_study_command(app, context);
     add_render_command(app, context);
     add_play_command(app, context);
     add_list_command(app, context);

@@ -6,17 +6,19 @@
 #include <filesystem>
 #include <optional>
 
+#include "autopilot/autopilot.h"
 #include "commands.h"
 #include "core/log.h"
 #include "film.h"
 #include "progress.h"
 #include "record/run_writer.h"
+#include "record/sums.h"
 #include "run_facts.h"
 #include "run_options.h"
 #include "scene/load_scene.h"
 #include "scene/script.h"
 #include "session.h"
-#include "task/metrics.h"
+#include "task_watch.h"
 
 namespace cathlab {
 namespace {
@@ -29,6 +31,8 @@ struct RunOptions {
     int threads = default_threads();
     FilmArguments film;
     bool force = false;
+    std::string pilot;  // "" = the script
+    std::string skill = "expert";
 };
 
 using Clock = std::chrono::steady_clock;
@@ -45,6 +49,9 @@ public:
           script_(script),
           folder_(options.out),
           steps_(step_count(options, session)),
+          watch_(session.world(), task_of(session.scene())),
+          pilot_(pilot(options, session)),
+          who_{pilot_ ? options.pilot : "script", pilot_ ? options.skill : ""},
           film_(open_film(options, session)),
           writer_(folder_, manifest(options, session, context), session.entity_names()) {}
 
@@ -60,14 +67,24 @@ public:
             }
             throw;
         }
-        finish(done_ == steps_);
-        return done_ == steps_;
+        const bool complete = done_ == steps_ || watch_.over();
+        finish(complete);
+        return complete;
     }
+    const TaskWatch& watch() const { return watch_; }
     double simulated_s() const { return static_cast<double>(done_) * session_.dt(); }
     double wall_s() const { return wall_s_; }
     const std::string& video() const { return video_; }
 
 private:
+    static std::unique_ptr<Autopilot> pilot(const RunOptions& options, Session& session) {
+        if (options.pilot.empty()) return nullptr;
+        const auto task = task_of(session.scene());
+        if (!task)
+            throw UserError(session.scene().path + ": sets no [task], so an autopilot has nothing to do there", true);
+        return std::make_unique<Autopilot>(session.world(), session.scene(), *task, find_skill(options.skill),
+                                           session.world().seed());
+    }
     static std::int64_t step_count(const RunOptions& options, const Session& session) {
         const double seconds = options.seconds > 0.0 ? options.seconds : session.scene().duration_s;
         return std::max<std::int64_t>(1, std::llround(seconds / session.dt()));
@@ -99,13 +116,14 @@ private:
         begin_ = Clock::now();
         Progress progress("running");
         const Input base = session_.base_input();
-        for (; done_ < steps_ && !stop_wanted(); ++done_) {
+        for (; done_ < steps_ && !watch_.over() && !stop_wanted(); ++done_) {
             if (RunWriter::wants_hash(done_)) writer_.hash(done_, session_.world().state_hash());
-            const Input input = script_.at(static_cast<double>(done_) * session_.dt(), base);
+            const Input input = pilot_ ? pilot_->act(session_.world(), session_.channels(), base)
+                                       : script_.at(static_cast<double>(done_) * session_.dt(), base);
             writer_.input(done_, input);
             session_.step(input);
             writer_.step(done_, session_.channels(), session_.events());
-            metrics_.add(session_.channels(), session_.dt());
+            watch_.add(session_.world(), session_.channels(), session_.dt());
             if (film_) draw();
             char detail[64];
             std::snprintf(detail, sizeof detail, "%.1f of %.1f s", simulated_s(),
@@ -123,7 +141,8 @@ private:
         if (finished_) return;
         finished_ = true;
         if (done_ > 0) writer_.hash(done_, session_.world().state_hash());
-        if (!metrics_.empty()) writer_.file("metrics.json", metrics_json(metrics_.result()));
+        if (!watch_.empty()) writer_.file("metrics.json", metrics_json(watch_.metrics()));
+        if (watch_.task()) writer_.file("result.json", watch_.result_json(who_));
         std::exception_ptr film_failure;  // a film that cannot be finished must not leave the logs open
         try {
             finish_film();
@@ -135,6 +154,7 @@ private:
         const std::filesystem::path video(video_);
         const bool inside = video.parent_path() == std::filesystem::path(folder_);
         writer_.finish(done_, complete && !film_failure, wall_s_, inside ? video.filename().string() : video_);
+        write_sums(folder_);
         if (film_failure) std::rethrow_exception(film_failure);
     }
     void finish_film() {
@@ -152,9 +172,11 @@ private:
     std::int64_t steps_ = 0;
     std::int64_t done_ = 0;
     std::string video_;
+    TaskWatch watch_;
+    std::unique_ptr<Autopilot> pilot_;
+    OperatorName who_;
     std::unique_ptr<Film> film_;
     RunWriter writer_;
-    MetricsAccumulator metrics_;
     Clock::time_point begin_ = Clock::now();
     double wall_s_ = 0.0;
     bool finished_ = false;
@@ -164,7 +186,10 @@ void run(RunOptions options, AppContext& context) {
     require_finite("--seconds", options.seconds);
     const SceneSpec scene =
         load_scene(find_scene(options.scene, context.data_root), options.overlays, context.data_root);
-    if (options.script.empty()) options.script = scene.script;
+    if (!options.pilot.empty() && !options.script.empty())
+        throw UserError("--script and --operator exclude each other", true);
+    if (!options.pilot.empty()) find_skill(options.skill);
+    if (options.script.empty() && options.pilot.empty()) options.script = scene.script;
     const Script script = options.script.empty() ? Script() : Script::load(options.script);
     film_options(options.film, scene, "", "");  // a wrong size is told before the world is built
     check_run_folder(options.out, options.force);
@@ -176,6 +201,10 @@ void run(RunOptions options, AppContext& context) {
     std::printf("%s: %.2f s simulated in %.2f s (%.2f x real time)%s%s\n", options.out.c_str(), simulated,
                 recording.wall_s(), simulated / std::max(1e-9, recording.wall_s()),
                 recording.video().empty() ? "" : ", film ", recording.video().c_str());
+    if (const auto& task = recording.watch().task())
+        std::printf("task %s: %s, score %.1f of 100 (%.0f passes)\n", task->name.c_str(),
+                    recording.watch().reached() ? "reached" : "not reached", recording.watch().score(),
+                    task->pass_score);
     if (!complete) {
         context.exit_code = 1;
         std::fprintf(stderr, "cathlab: stopped after %.2f s; %s is closed and marked incomplete\n", simulated,
@@ -203,6 +232,10 @@ void add_run_command(CLI::App& app, AppContext& context) {
                      "the film: .mp4, .avi (lossless), or none; else fluoro.mp4 in the folder");
     command->add_option("--overlay", options->overlays, "a file laid over the scene; may be given again")
         ->allow_extra_args(false);
+    command->add_option("--operator", options->pilot, "who acts instead of a script; the scene must set a task")
+        ->check(CLI::IsMember({"autopilot"}));
+    command->add_option("--skill", options->skill, "of the autopilot: expert, intermediate or novice")
+        ->capture_default_str();
     command->add_flag("--force", options->force, "replace an earlier run in the folder");
     command->callback([options, &context] { run(*options, context); });
 }

@@ -1,0 +1,159 @@
+// cathlab score: the metrics of recorded runs again, from their inputs alone, without a picture.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "core/errors.h"
+#include "progress.h"
+#include "record/run_reader.h"
+#include "record/sums.h"
+#include "recorded_scene.h"
+#include "session.h"
+#include "task_watch.h"
+
+namespace cathlab {
+namespace {
+
+struct ScoreOptions {
+    std::vector<std::string> folders;
+    int threads = default_threads();
+    bool json = false;
+};
+
+struct Scored {
+    std::string folder;
+    Metrics metrics;
+    std::optional<TaskSpec> task;
+    bool reached = false;
+    double score = 0.0;
+    std::vector<std::string> differences;  // from what is stored
+};
+
+bool same_bits(double a, double b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+void compare_metrics(const std::string& folder, const Metrics& now, std::vector<std::string>& differences) {
+    const std::string path = folder + "/metrics.json";
+    std::ifstream in(path);
+    const auto stored = nlohmann::json::parse(in, nullptr, false);
+    if (!in || !stored.is_object()) {
+        differences.push_back(path + " is missing or no JSON object");
+        return;
+    }
+    for (const MetricInfo& metric : metric_table()) {
+        const auto it = stored.find(std::string(metric.name));
+        if (it == stored.end() || !it->is_number())
+            differences.push_back(path + " lacks " + std::string(metric.name));
+        else if (!same_bits(it->get<double>(), now.*metric.value))
+            differences.push_back(path + ": " + std::string(metric.name) + " is " + it->dump() + " there and " +
+                                  nlohmann::json(now.*metric.value).dump() + " by the inputs");
+    }
+}
+
+/// The recorded inputs once more, with every channel and hash compared on the way.
+Scored score_run(const std::string& folder, int threads, const AppContext& context) {
+    Scored out;
+    out.folder = folder;
+    out.differences = check_sums(folder);
+    const RunRecord run = read_run(folder);
+    const SceneSpec scene = recorded_scene(run, context);
+    Session session(scene, run.manifest.seed, threads, context);
+    if (session.anatomy_hash() != run.manifest.anatomy_hash)
+        throw UserError(folder + ": the anatomy is built otherwise than when this run was recorded");
+    const std::vector<Channels> trace = read_trace(folder, run.manifest.complete);
+    TaskWatch watch(session.world(), task_of(scene));
+    Progress progress("scoring");
+    bool trace_differs = false, state_differs = false;
+    std::size_t next = 0;
+    const auto compare_state = [&](std::int64_t steps) {
+        if (next >= run.hashes.size() || run.hashes[next].steps != steps) return;
+        const std::string entity = first_difference(run.hashes[next].hash, session.world().state_hash());
+        ++next;
+        if (entity.empty() || state_differs) return;
+        state_differs = true;
+        out.differences.push_back(folder + ": the state differs after step " + std::to_string(steps) +
+                                  ", first in the entity '" + entity + "' (inputs edited, or another build?)");
+    };
+    for (std::int64_t step = 0; step < run.steps; ++step) {
+        if (stop_wanted()) throw UserError("stopped; nothing was written");
+        compare_state(step);
+        session.step(run.input_at(step));
+        watch.add(session.world(), session.channels(), session.dt());
+        const auto k = static_cast<std::size_t>(step);
+        const ChannelInfo* channel = k < trace.size() ? first_difference(trace[k], session.channels()) : nullptr;
+        if (channel && !trace_differs) {
+            trace_differs = true;
+            out.differences.push_back(folder + "/trace.csv: " + std::string(channel->name) + " differs in step " +
+                                      std::to_string(step));
+        }
+        progress.update(static_cast<double>(step + 1) / static_cast<double>(run.steps), folder);
+    }
+    compare_state(run.steps);
+    progress.end();
+    out.metrics = watch.metrics();
+    out.task = watch.task();
+    out.reached = watch.reached();
+    out.score = watch.score();
+    compare_metrics(folder, out.metrics, out.differences);
+    return out;
+}
+
+nlohmann::ordered_json json_of(const Scored& run) {
+    nlohmann::ordered_json out{{"folder", run.folder}};
+    if (run.task) {
+        out["task"] = run.task->name;
+        out["reached"] = run.reached;
+        out["score"] = run.score;
+        out["passed"] = run.reached && run.score >= run.task->pass_score;
+    }
+    for (const MetricInfo& metric : metric_table())
+        out["metrics"][std::string(metric.name)] = run.metrics.*metric.value;
+    out["differences"] = run.differences;
+    return out;
+}
+
+void print(const Scored& run) {
+    std::printf("%s\n", run.folder.c_str());
+    if (run.task)
+        std::printf("  task %s: %s, score %.1f of 100 (%.0f passes)\n", run.task->name.c_str(),
+                    run.reached ? "reached" : "not reached", run.score, run.task->pass_score);
+    for (const MetricInfo& metric : metric_table())
+        std::printf("  %-30.*s %14.6g %.*s\n", static_cast<int>(metric.name.size()), metric.name.data(),
+                    run.metrics.*metric.value, static_cast<int>(metric.unit.size()), metric.unit.data());
+    for (const std::string& difference : run.differences) std::printf("  DIFFERS: %s\n", difference.c_str());
+    if (run.differences.empty()) std::printf("  every file, channel, hash and metric is what the inputs give\n");
+}
+
+void score_runs(const ScoreOptions& options, AppContext& context) {
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const std::string& folder : options.folders) {
+        const Scored run = score_run(folder, options.threads, context);
+        if (!run.differences.empty()) context.exit_code = 1;
+        if (options.json)
+            all.push_back(json_of(run));
+        else
+            print(run);
+    }
+    if (options.json) std::printf("%s\n", all.dump(2).c_str());
+}
+
+}  // namespace
+
+void add_score_command(CLI::App& app, AppContext& context) {
+    const auto options = std::make_shared<ScoreOptions>();
+    CLI::App* command = app.add_subcommand(
+        "score", "The metrics of recorded runs again, from their inputs alone; exit code 1 where anything differs");
+    command->add_option("DIR", options->folders, "run folders")->required();
+    command->add_option("--threads", options->threads, "of the step; they change no bit")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    command->add_flag("--json", options->json, "As JSON");
+    command->callback([options, &context] { score_runs(*options, context); });
+}
+
+}  // namespace cathlab

@@ -1,0 +1,44 @@
+// A run under a task: what it has come to, step by step, and what is written of it at the end.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/channels.h"
+#include "task/metrics.h"
+#include "task/scene_task.h"
+#include "world/world.h"
+
+namespace cathlab {
+
+/// Who sat at the controls.
+struct OperatorName {
+    std::string kind = "script";  ///< "script", "autopilot", "person"
+    std::string skill;            ///< of the autopilot
+};
+
+class TaskWatch {
+public:
+    /// Without a task: metrics alone.
+    TaskWatch(const World& world, std::optional<TaskSpec> task);
+
+    void add(const World& world, const Channels& channels, double dt);
+    /// Whether the task has come to its end; never without one.
+    bool over() const;
+    bool reached() const;
+    const std::optional<TaskSpec>& task() const { return task_; }
+    Metrics metrics() const { return metrics_.result(); }
+    bool empty() const { return metrics_.empty(); }
+    /// 0 where the goal was not reached.
+    double score() const;
+    /// result.json; "" without a task.
+    std::string result_json(const OperatorName& who) const;
+
+private:
+    std::optional<TaskSpec> task_;
+    std::optional<GoalPoint> goal_;
+    std::optional<GoalTracker> tracker_;
+    MetricsAccumulator metrics_;
+};
+
+}  // namespace cathlab

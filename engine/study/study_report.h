@@ -1,0 +1,22 @@
+// The report of a study: who did how well, and what can be said of it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/html_page.h"
+#include "study/protocol.h"
+#include "study/run_index.h"
+
+namespace cathlab {
+
+/// Time and collision by task and group as in [li2025] table 2 (mean, SD, Kruskal and Wallis), then medians, quartiles,
+/// bootstrap intervals, Mann-Whitney with Holm's correction, Cliff's delta, learning curves and every trial.  The last
+/// trial of each task counts.  What cannot be computed stands as "-" with a sentence why.
+Page study_page(const Protocol& protocol, const std::vector<Participant>& participants,
+                const std::vector<RunEntry>& runs);
+
+/// One row a run, every metric a column.
+std::string trials_csv(const std::vector<RunEntry>& runs);
+
+}  // namespace cathlab
