@@ -1,7 +1,8 @@
 // cathlab score: the metrics of recorded runs again, from their inputs alone, without a picture.
 #include <CLI/CLI.hpp>
+#include <bit>
+#include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -34,7 +35,7 @@ struct Scored {
 };
 
 bool same_bits(double a, double b) {
-    return std::memcmp(&a, &b, sizeof a) == 0;
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
 void compare_metrics(const std::string& folder, const Metrics& now, std::vector<std::string>& differences) {

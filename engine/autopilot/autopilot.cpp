@@ -15,12 +15,11 @@ namespace cathlab {
 
 namespace {
 
-constexpr double patience_s = 1.5;     // of pushing without getting on
-constexpr double progress_mm = 2.0;    // less is not getting on
-constexpr double draw_back_mm = 20.0;  // when stuck
-constexpr double fork_mm = 25.0;       // drawn back behind where it went astray
-constexpr double turn_deg = 137.5;     // a turn after each failure: by the golden angle no direction is tried twice
-constexpr double turn_speed_deg_s = 90.0;
+constexpr double patience_s = 1.5;                  // of pushing without getting on
+constexpr double progress_mm = 2.0;                 // less is not getting on
+constexpr double draw_back_mm = 20.0;               // when stuck
+constexpr double fork_mm = 25.0;                    // drawn back behind where it went astray
+constexpr double turn_speed_deg_s = 90.0;           // while it draws back: no two attempts come from one side
 constexpr double tremor_s = 0.1;                    // the hand's noise stays so long
 constexpr double look_every_s = 0.1;                // between two looks at the bends
 constexpr double least_share = 0.15;                // of the speed, beside the goal

@@ -40,15 +40,19 @@ std::vector<std::string> check_sums(const std::string& folder) {
     if (!json.is_object()) throw UserError(path + ": is not a JSON object (edited?)");
     std::map<std::string, std::string> now = sums_now(folder);
     std::vector<std::string> out;
+    const auto tell = [&](const std::string& name, const char* what) {
+        out.push_back(folder + "/");
+        out.back().append(name).append(what);
+    };
     for (const auto& [name, sum] : json.items()) {
         const auto found = now.find(name);
         if (found == now.end())
-            out.push_back(folder + "/" + name + " is missing");
+            tell(name, " is missing");
         else if (!sum.is_string() || sum.get<std::string>() != found->second)
-            out.push_back(folder + "/" + name + " was changed since the run was closed");
+            tell(name, " was changed since the run was closed");
         if (found != now.end()) now.erase(found);
     }
-    for (const auto& [name, sum] : now) out.push_back(folder + "/" + name + " was added since the run was closed");
+    for (const auto& [name, sum] : now) tell(name, " was added since the run was closed");
     return out;
 }
 

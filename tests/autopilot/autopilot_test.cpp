@@ -49,9 +49,11 @@ TEST(Autopilot, AnExpertBringsTheWireIntoTheAbdominalAortaUnderTheLimitAndAgainT
 }
 
 TEST(Tasks, EveryOneOfTheProjectIsValidAndItsGoalCanBeReachedByVessels) {
-    const std::string root = CATHLAB_SOURCE_DIR;
-    for (const std::string& name : names_in_folder(root + "/scenes/tasks", ".toml")) {
-        const SceneSpec scene = load_scene(root + "/scenes/tasks/" + name + ".toml", {}, root);
+    const std::string root = CATHLAB_SOURCE_DIR, folder = root + "/scenes/tasks";
+    for (const std::string& name : names_in_folder(folder, ".toml")) {
+        std::string file = folder;
+        file.append("/").append(name).append(".toml");
+        const SceneSpec scene = load_scene(file, {}, root);
         ASSERT_TRUE(task_of(scene)) << name;
         EXPECT_FALSE(task_of(scene)->instructions.empty()) << name;
         EXPECT_FALSE(task_of(scene)->criteria.empty()) << name;
