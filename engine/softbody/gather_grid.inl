@@ -1,13 +1,15 @@
 // The gather of goals from transforms in whole numbers, included once an instruction set, as kernel.inl is.
 using Column = double __attribute__((vector_size(4 * sizeof(double))));
-using Whole = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
-using WholeTwo = std::int32_t __attribute__((vector_size(8 * sizeof(std::int32_t))));
+using Signed = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
+// Without a sign: sums go round, which signed numbers must not.
+using Whole = std::uint32_t __attribute__((vector_size(4 * sizeof(std::uint32_t))));
+using WholeTwo = std::uint32_t __attribute__((vector_size(8 * sizeof(std::uint32_t))));
 
 // Four whole numbers as doubles.  (The compiler's own conversion of a vector goes by halves.)
 #if BLOCK == 4
-#define AS_DOUBLE(numbers) __builtin_ia32_cvtdq2pd256(numbers)
+#define AS_DOUBLE(numbers) __builtin_ia32_cvtdq2pd256((Signed)(numbers))
 #else
-#define AS_DOUBLE(numbers) __builtin_convertvector(numbers, Column)
+#define AS_DOUBLE(numbers) __builtin_convertvector((Signed)(numbers), Column)
 #endif
 
 // Each goal's number among those that are a turn over the number of clusters apart that is nearest to x.

@@ -93,12 +93,13 @@ TARGET static inline void NAMED(polar)(const NAMED(V) * a, NAMED(V) * q) {
 }
 
 #if ON_GRID
-using NAMED(Coordinate) = std::int32_t __attribute__((vector_size(WIDTH * sizeof(std::int32_t))));
+// Without a sign: their differences go round, which signed numbers must not.
+using NAMED(Coordinate) = std::uint32_t __attribute__((vector_size(WIDTH * sizeof(std::uint32_t))));
 
 // Places of WIDTH particles, one a lane.  All three numbers of a particle come in one load, and the next one's first.
 TARGET static inline void NAMED(places)(const std::int32_t* from, const std::int32_t* place, NAMED(Coordinate) & x,
                                         NAMED(Coordinate) & y, NAMED(Coordinate) & z) {
-    using Four = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
+    using Four = std::uint32_t __attribute__((vector_size(4 * sizeof(std::uint32_t))));
     Four of[WIDTH];
     for (int l = 0; l < WIDTH; ++l) __builtin_memcpy(&of[l], from + place[l], sizeof(Four));
 #if WIDTH == 4
@@ -126,7 +127,8 @@ TARGET static inline void NAMED(places)(const std::int32_t* from, const std::int
 
 // In steps of the grid; their difference is taken modulo 2^32, so nothing is lost where the count turns over.
 TARGET static inline NAMED(V) NAMED(length)(NAMED(Coordinate) steps) {
-    return __builtin_convertvector(steps, NAMED(V));
+    using Signed = std::int32_t __attribute__((vector_size(WIDTH * sizeof(std::int32_t))));
+    return __builtin_convertvector((Signed)steps, NAMED(V));
 }
 
 // R in whole parts of the unit, t in steps of the grid.  t is the one of the R that stands there, rounded as it is.
