@@ -129,6 +129,20 @@ void describe_camera(const Parts& parts, FrameDescription& frame) {
     frame.inner_camera = camera;
 }
 
+// From before the patient, at the tip that the inner view looks from: as the fluoroscopy at AP shows it.
+void describe_outer_camera(const ViewChange& change, FrameDescription& frame) {
+    constexpr double away_mm = 330.0, field_deg = 40.0;
+    frame.show_outer_view = !change.third_person.empty() && !change.alone;
+    frame.outer_map = change.third_person == "force" ? OuterMap::force : OuterMap::displacement;
+    frame.outer_camera.reset();
+    if (!frame.inner_camera) return;
+    Mat3 axes;
+    axes << Vec3::UnitX(), -Vec3::UnitZ(), Vec3::UnitY();  // right, down, forward
+    frame.outer_camera.emplace();
+    frame.outer_camera->pose = {frame.inner_camera->pose.position - away_mm * Vec3::UnitY(), Quat(axes)};
+    frame.outer_camera->field_of_view_deg = field_deg;
+}
+
 void describe_beam(const World& world, const SceneSpec& scene, const Channels& channels, const ViewChange& change,
                    FrameDescription& frame) {
     BeamSpec fallback;
@@ -177,6 +191,7 @@ void describe_frame(World& world, const SceneSpec& scene, const Channels& channe
     if (parts.wire) frame.devices.push_back(describe_wire(*parts.wire));
     describe_camera(parts, frame);
     frame.show_inner_view = frame.inner_camera.has_value() && !change.alone;
+    describe_outer_camera(change, frame);
     describe_beam(world, scene, channels, change, frame);
     frame.wall_force_limit_n = channels.force_limit_n > 0.0 ? channels.force_limit_n : 0.8;
 }

@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "core/csv.h"
 #include "core/errors.h"
+#include "play/measure.h"
 #include "play/play_app.h"
 #include "play/tour.h"
 #include "scene/load_scene.h"
@@ -16,6 +17,7 @@ struct PlayArguments {
     std::string scene, size;
     std::string difficulty, tour;
     play::PlayOptions options;
+    double measure_s = 0.0;
     bool print_config = false, no_record = false;
 };
 
@@ -50,6 +52,10 @@ void run_play(PlayArguments& arguments, AppContext& context) {
         play::tour(options, context, arguments.tour);
         return;
     }
+    if (arguments.measure_s > 0.0) {
+        play::measure(options, context, arguments.measure_s);
+        return;
+    }
     play::PlayApp app(options, context);
     app.run();
     for (const std::string& text : app.said()) std::fprintf(stderr, "%s\n", text.c_str());
@@ -78,6 +84,8 @@ void add_play_command(CLI::App& app, AppContext& context) {
     command->add_flag("--no-sound", options.silent, "open no loudspeaker");
     command->add_option("--tour", arguments->tour,
                         "walks through every screen without a display; pictures into a folder");
+    command->add_option("--measure", arguments->measure_s, "plays by itself for so many seconds and prints how fast it was")
+        ->check(CLI::Range(1.0, 86400.0));
     command->callback([arguments, &context] { run_play(*arguments, context); });
 }
 

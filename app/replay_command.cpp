@@ -163,6 +163,8 @@ void add_render_command(CLI::App& app, AppContext& context) {
     command->add_option("--detector", view.detector, "flat_panel or image_intensifier")
         ->check(CLI::IsMember({"flat_panel", "image_intensifier"}));
     command->add_flag("--beam-on", view.beam_on, "expose every picture, whether the pedal was down or not");
+    command->add_option("--third-person", view.third_person, "the view from outside too, its wall coloured by this")
+        ->check(CLI::IsMember({"force", "displacement"}));
     command->add_flag("--fluoroscopy-alone", view.alone, "without inner view and panels");
     command->add_option("--from", view.from_s, "s, of the first picture")->check(CLI::Range(0.0, 86400.0));
     command->add_option("--to", options->to_s, "s, where it ends; else with the run")->check(CLI::Range(0.02, 86400.0));

@@ -15,6 +15,7 @@ struct ViewChange {
     std::optional<double> kvp;
     std::string detector;           ///< "" = the scene's
     std::vector<double> isocentre;  ///< empty, or x, y, z in the patient, mm
+    std::string third_person;       ///< "" = without, else what colours its wall: "force" or "displacement"
     bool alone = false;             ///< the fluoroscopy without inner view and panels
     double from_s = 0.0;            ///< of the first picture
     bool beam_on = false;           ///< every picture is exposed, whether the pedal was down or not

@@ -58,10 +58,11 @@ void Painter::paint_views(Shot& shot, bool fresh) {
     if (!fresh && !resized) return;
     painted_ = sizes;
     const bool paced =
-        threaded_ && !resized && std::chrono::duration<double>(Clock::now() - inner_painted_).count() < quick_view_s;
+        threaded_ && !resized && std::chrono::duration<double>(Clock::now() - quick_painted_).count() < quick_view_s;
     if (!paced) {
         paint_view(View::inner, shot, sizes);
-        inner_painted_ = Clock::now();
+        paint_view(View::outer, shot, sizes);
+        quick_painted_ = Clock::now();
     }
     // Between the pulses, and while the pedal is up, the last picture stands.
     if (shot.pulses != pulses_ && shot.picture.beam_on) {
@@ -78,6 +79,7 @@ void Painter::paint_view(View view, Shot& shot, const PaintSizes& sizes) {
     frame.height = sizes.height[i];
     frame.show_fluoroscopy = view == View::fluoroscopy;
     frame.show_inner_view = view == View::inner;
+    frame.show_outer_view = view == View::outer;
     frame.overlay = {};
     const auto begin = Clock::now();
     try {

@@ -17,7 +17,7 @@
 
 namespace cathlab::play {
 
-enum class View : std::size_t { fluoroscopy, inner, count };
+enum class View : std::size_t { fluoroscopy, inner, outer, count };
 inline constexpr std::size_t view_count = static_cast<std::size_t>(View::count);
 
 /// Pixels of each view; 0 = not wanted.
@@ -58,7 +58,7 @@ private:
     std::array<Image8, view_count> drawn_;
     std::uint64_t pulses_ = 0;
     PaintSizes painted_;
-    Clock::time_point inner_painted_;
+    Clock::time_point quick_painted_;
     bool threaded_ = false;
 
     mutable std::mutex mutex_;

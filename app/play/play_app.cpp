@@ -20,6 +20,16 @@ namespace {
 constexpr double frame_s = 1.0 / 60.0;
 constexpr std::size_t most_latencies = 20000;
 
+const char* side_title(Side side) {
+    switch (side) {
+        case Side::inner: return "inner view";
+        case Side::displacement: return "from outside: displacement of the wall";
+        case Side::force: return "from outside: force on the wall";
+        case Side::kept: break;
+    }
+    return "kept picture";
+}
+
 WindowOptions window_options(const PlayOptions& options, const Settings& settings) {
     WindowOptions out = options.window;
     out.title = "cathlab";
@@ -95,17 +105,22 @@ void PlayApp::begin_load(const std::string& folder) {
 }
 
 void PlayApp::begin_session(std::unique_ptr<Simulation> simulation) {
-    simulation->pilot().set_follows(inner_allowed());
+    simulation->pilot().set_follows(views_allowed());
     if (!simulation->recording_fault().empty()) say(simulation->recording_fault());
     sim_ = std::make_unique<SimThread>(std::move(simulation), options_.threaded);
     painter_ = std::make_unique<Painter>(sim_->shots(), options_.threaded, [] { return make_gl_target(); });
-    fluoroscopy_ = inner_ = kept_ = Image8();
+    clip_.clear();
+    fluoroscopy_ = inner_ = outer_ = kept_ = Image8();
     stamps_.clear();
     input_.release_keys();
     screen_ = Screen::play;
     panels_.clear();
-    side_is_kept_ = !inner_allowed();
-    if (!options_.replay.empty()) return;
+    side_ = views_allowed() ? Side::inner : Side::kept;
+    if (!options_.replay.empty()) {
+        if (seek_to_ > 0) sim_->run_to(seek_to_);
+        seek_to_ = -1;
+        return;
+    }
     if (!setup_.task.empty())
         for (const TaskFile& task : choices_.tasks)
             if (task.id == setup_.task) say(task.task.instructions, 10.0);
@@ -223,7 +238,7 @@ void PlayApp::act(Control control) {
             window_.set_fullscreen(settings_.view.fullscreen);
             break;
         case Control::view:
-            if (inner_allowed()) side_is_kept_ = !side_is_kept_;
+            next_side();
             break;
         case Control::reference:
             if (fluoroscopy_.rgb.empty()) {
@@ -232,8 +247,9 @@ void PlayApp::act(Control control) {
             }
             kept_ = fluoroscopy_;
             ++kept_revision_;
-            side_is_kept_ = true;
+            side_ = Side::kept;
             break;
+        case Control::clip: save_clip(); break;
         case Control::screenshot: shot_wanted_ = true; break;
         default: break;  // the pilot's
     }
@@ -334,27 +350,46 @@ void PlayApp::lay_out() {
     const auto most = static_cast<double>(settings_.view.largest_picture);
     PaintSizes sizes;
     sizes.width[0] = sizes.height[0] = std::max(64, std::min(side, static_cast<int>(most)));
-    if (layout_.side.width > 0 && inner_allowed()) {
+    if (layout_.side.width > 0 && views_allowed() && side_ != Side::kept) {
+        const std::size_t i = side_ == Side::inner ? 1 : 2;
         const double shrink = std::min(1.0, most / std::max(layout_.side.width, layout_.side.height));
-        sizes.width[1] = std::max(64, static_cast<int>(shrink * layout_.side.width));
-        sizes.height[1] = std::max(64, static_cast<int>(shrink * layout_.side.height));
+        sizes.width[i] = std::max(64, static_cast<int>(shrink * layout_.side.width));
+        sizes.height[i] = std::max(64, static_cast<int>(shrink * layout_.side.height));
     }
     painter_->wish(sizes);
+}
+
+void PlayApp::next_side() {
+    if (!views_allowed()) return;
+    do side_ = side_ == Side::kept ? Side::inner : static_cast<Side>(static_cast<int>(side_) + 1);
+    while (side_ == Side::kept && kept_.rgb.empty());
+    const OuterMap map = side_ == Side::force ? OuterMap::force : OuterMap::displacement;
+    sim_->between_steps([&](Simulation& simulation) { simulation.set_outer_map(map); });
+}
+
+void PlayApp::note_latency(std::uint64_t stamp) {
+    while (!stamps_.empty() && stamps_.front().first <= stamp) {
+        latency_s_ = std::chrono::duration<double>(Clock::now() - stamps_.front().second).count();
+        if (latencies_ms_.size() < most_latencies) latencies_ms_.push_back(static_cast<float>(1e3 * latency_s_));
+        stamps_.erase(stamps_.begin());
+    }
 }
 
 void PlayApp::take_pictures() {
     if (!painter_) return;
     if (const std::string fault = painter_->fault(); !fault.empty()) say(fault);
     std::uint64_t stamp = 0;
-    if (painter_->take(View::inner, inner_, stamp)) {
-        ++inner_revision_;
-        while (!stamps_.empty() && stamps_.front().first <= stamp) {
-            latency_s_ = std::chrono::duration<double>(Clock::now() - stamps_.front().second).count();
-            if (latencies_ms_.size() < most_latencies) latencies_ms_.push_back(static_cast<float>(1e3 * latency_s_));
-            stamps_.erase(stamps_.begin());
-        }
+    if (painter_->take(View::fluoroscopy, fluoroscopy_, stamp)) {
+        ++fluoroscopy_revision_;
+        clip_.add(fluoroscopy_, status_.channels.time_s);
     }
-    if (painter_->take(View::fluoroscopy, fluoroscopy_, stamp)) ++fluoroscopy_revision_;
+    bool quick = painter_->take(View::inner, inner_, stamp);
+    if (quick) ++inner_revision_;
+    if (painter_->take(View::outer, outer_, stamp)) {
+        ++outer_revision_;
+        quick = true;
+    }
+    if (quick) note_latency(stamp);
 }
 
 void PlayApp::draw_screens(double dt) {
@@ -363,7 +398,7 @@ void PlayApp::draw_screens(double dt) {
         PlayView view;
         view.status = status_;
         view.difficulty = setup_.difficulty;
-        view.side_title = layout_.side.width == 0 ? "" : side_is_kept_ ? "kept picture" : "inner view";
+        view.side_title = layout_.side.width == 0 ? "" : side_title(side_);
         view.hands_open = hands_open_;
         view.recording = status_.recording_fault.empty() && !loader_.folder().empty();
         view.replay = !options_.replay.empty();
@@ -372,17 +407,17 @@ void PlayApp::draw_screens(double dt) {
                         (status_.steps > 0 ? status_.channels.time_s / static_cast<double>(status_.steps) : 0.02);
         for (const Toast& toast : toasts_) view.toasts.push_back(toast.text);
         PlayWishes wishes;
+        std::optional<std::int64_t> sought;
         wishes.press = [&](Control control) { input_.press(control); };
         wishes.hold = [&](Control control, double value) { input_.hold(control, value); };
         wishes.turn_to = [&](double primary, double secondary) {
             if (sim_) sim_->between_steps([&](Simulation& s) { s.pilot().turn_to(primary, secondary); });
         };
-        wishes.seek = [&](std::int64_t step) {
-            if (sim_ && step > status_.steps) sim_->run_to(step);
-        };
+        wishes.seek = [&](std::int64_t step) { sought = step; };
         draw_play(view, layout_, settings_.bindings, wishes);
         if (wishes.menu && panels_.empty()) open(Panel::pause);
         if (wishes.hands) hands_open_ = !hands_open_;
+        if (sought) seek(*sought);
     }
     Wish wish = Wish::none;
     switch (panel()) {
@@ -413,15 +448,18 @@ void PlayApp::compose() {
     lists_.clear();
     if (screen_ == Screen::play) {
         pictures_.push_back({&fluoroscopy_, layout_.fluoroscopy, fluoroscopy_revision_});
-        if (side_is_kept_) {
+        if (side_ == Side::kept) {
             const FrameRect& place = layout_.side;
             const int side = std::min(place.width, place.height);
             pictures_.push_back({&kept_, {place.x + (place.width - side) / 2, place.y, side, side}, kept_revision_});
-        } else {
+        } else if (side_ == Side::inner) {
             pictures_.push_back({&inner_, layout_.side, inner_revision_});
+        } else {
+            pictures_.push_back({&outer_, layout_.side, outer_revision_});
         }
         HudData panels = status_.panels;
         panels.running = !status_.paused;
+        panels.high_contrast = settings_.view.palette == "high-contrast";
         panels.real_time_factor = status_.real_time_factor;
         HudLayout hud;
         hud.width = layout_.width;
@@ -447,22 +485,47 @@ Image8 PlayApp::picture() {
     return out;
 }
 
+std::string PlayApp::new_file(const std::string& stem, const std::string& ending) const {
+    std::string folder = loader_.folder();
+    if (folder.empty()) folder = data_home();
+    std::error_code error;
+    fs::create_directories(folder, error);
+    std::string path;
+    for (int i = 1; path.empty() || fs::exists(path, error); ++i)
+        path = folder + "/" + stem + "-" + std::to_string(i) + ending;
+    return path;
+}
+
 void PlayApp::screenshot() {
     shot_wanted_ = false;
     try {
         Image8 picture;
         window_.read(picture);
-        std::string folder = loader_.folder();
-        if (folder.empty()) folder = data_home();
-        std::error_code error;
-        fs::create_directories(folder, error);
-        std::string path;
-        for (int i = 1; path.empty() || fs::exists(path, error); ++i)
-            path = folder + "/screenshot-" + std::to_string(i) + ".png";
+        const std::string path = new_file("screenshot", ".png");
         write_png(path, picture);
         say("saved " + path);
     } catch (const UserError& error) {
         say(error.what());
+    }
+}
+
+void PlayApp::save_clip() {
+    constexpr double clip_fps = 15.0;
+    if (clip_.count() == 0)
+        say("there is no fluoroscopy yet for a clip: X-rays first");
+    else if (clip_.save(new_file("clip", ".mp4"), clip_fps))
+        say("the last seconds of fluoroscopy are being saved");
+}
+
+void PlayApp::seek(std::int64_t step) {
+    if (!sim_) return;
+    if (step > status_.steps) {
+        sim_->run_to(step);
+    } else if (step < status_.steps) {  // back means again from the start
+        painter_.reset();
+        sim_.reset();
+        seek_to_ = step;
+        begin_load("");
     }
 }
 
@@ -483,6 +546,7 @@ bool PlayApp::frame(double dt) {
         }
     }
     hands();
+    say(clip_.report());
     if (sim_) {
         if (!options_.threaded) sim_->run_for(dt);
         const std::string fault = status_.recording_fault;

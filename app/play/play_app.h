@@ -9,6 +9,7 @@
 #include "context.h"
 #include "hud/hud.h"
 #include "hud/ui_context.h"
+#include "play/clip.h"
 #include "play/input_state.h"
 #include "play/loader.h"
 #include "play/pads.h"
@@ -37,6 +38,9 @@ struct PlayOptions {
 };
 
 enum class Screen { start, loading, play, result };
+/// What stands beside the fluoroscopy.
+enum class Side { inner, displacement, force, kept };
+
 enum class Panel { none, pause, settings, help };
 
 class PlayApp {
@@ -56,6 +60,7 @@ public:
     Image8 picture();
 
     Screen screen() const { return screen_; }
+    Side side() const { return side_; }
     Panel panel() const { return panels_.empty() ? Panel::none : panels_.back(); }
     void open(Panel panel);
     /// Closes the panel on top; without any, time goes on.
@@ -97,11 +102,16 @@ private:
     void draw_screens(double dt);
     void compose();
     void draw_window();
-    void note_latency();
+    void note_latency(std::uint64_t stamp);
+    void next_side();
     void say(const std::string& text, double shown_s = 5.0);
     void screenshot();
+    void save_clip();
+    /// A name in the session's folder, or the user's data folder, that nothing has yet.
+    std::string new_file(const std::string& stem, const std::string& ending) const;
+    void seek(std::int64_t step);
     bool steering() const { return screen_ == Screen::play && panels_.empty(); }
-    bool inner_allowed() const { return setup_.difficulty != Difficulty::exam; }
+    bool views_allowed() const { return setup_.difficulty != Difficulty::exam; }
 
     PlayOptions options_;
     const AppContext& context_;
@@ -127,7 +137,8 @@ private:
 
     Screen screen_ = Screen::start;
     std::vector<Panel> panels_;
-    bool quit_ = false, hands_open_ = false, side_is_kept_ = false, was_paused_ = false;
+    bool quit_ = false, hands_open_ = false, was_paused_ = false;
+    Side side_ = Side::inner;
     SettingsView settings_view_;
     ResultView result_;
     double now_s_ = 0.0;
@@ -137,8 +148,10 @@ private:
     std::unique_ptr<SimThread> sim_;
     std::unique_ptr<Painter> painter_;
     Status status_;
-    Image8 fluoroscopy_, inner_, kept_;
-    std::uint64_t fluoroscopy_revision_ = 0, inner_revision_ = 0, kept_revision_ = 0;
+    ClipKeeper clip_;
+    std::int64_t seek_to_ = -1;  ///< of a replay that is being begun again
+    Image8 fluoroscopy_, inner_, outer_, kept_;
+    std::uint64_t fluoroscopy_revision_ = 0, inner_revision_ = 0, outer_revision_ = 0, kept_revision_ = 0;
     ScreenLayout layout_;
     HudDrawList hud_list_, ui_list_;
     std::vector<WindowPicture> pictures_;

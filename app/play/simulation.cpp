@@ -111,6 +111,7 @@ void Simulation::describe(FrameDescription& frame) {
     frame.frame_index = pulses_;
     frame.inner_camera = camera_;
     describe_frame(session_.world(), options_.scene, channels(), {}, memory_, frame);
+    frame.outer_map = outer_map_;
     camera_ = frame.inner_camera;
 }
 

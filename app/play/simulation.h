@@ -73,6 +73,8 @@ public:
 
     /// Fills everything but sizes and overlay, as Film does.
     void describe(FrameDescription& frame);
+    /// What colours the wall in the view from outside.
+    void set_outer_map(OuterMap map) { outer_map_ = map; }
     /// Everything but frames a second and the real-time factor.
     void fill_panels(HudData& out);
 
@@ -100,6 +102,7 @@ private:
     MessageLines messages_;
     FrameMemory memory_;
     std::optional<FrameCamera> camera_;
+    OuterMap outer_map_ = OuterMap::displacement;
     Input input_;
     std::int64_t steps_ = 0;
     std::uint64_t pulses_ = 0;

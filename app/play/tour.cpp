@@ -69,6 +69,9 @@ void tour(PlayOptions options, const AppContext& context, const std::string& fol
     tour.tap(SDL_SCANCODE_R);
     tour.keep("kept");
     tour.tap(SDL_SCANCODE_V);
+    tour.tap(SDL_SCANCODE_V);
+    tour.keep("outside");
+    tour.tap(SDL_SCANCODE_V);
     app.open_hands(true);
     tour.keep("mouse");
     app.open_hands(false);

@@ -39,6 +39,7 @@ struct HudData {
     std::vector<std::string> messages;  ///< newest last
     double frames_per_s = 0;
     double real_time_factor = 0;
+    bool high_contrast = false;  ///< white, grey and hatched bars instead of colours
 };
 
 /// "LAO 30", "RAO 12", "AP 0" from DICOM's signed angle (nearest whole degree); likewise "CRAN 25", "CAUD 10", "CRAN

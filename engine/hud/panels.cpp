@@ -79,17 +79,35 @@ void draw_picture_text(const Pen& pen, const HudData& d, const HudLayout& l) {
     std::string dose = text("DAP %.3f Gy cm2", d.dose_area_gycm2);
     if (d.contrast_ml > 0) dose += text("  contrast %.1f mL", d.contrast_ml);
     pen.put(m, base - 1.2F * step, faint, dose, 12);
-    pen.put_right(l.split - m, base - 1.25F * step, ink, "SIMULATION - NOT FOR DIAGNOSIS", 12);
+    // Beside the dose, or above it where the letters are large and the picture is narrow.
+    const std::string warning = "SIMULATION - NOT FOR DIAGNOSIS";
+    const bool room = pen.size(dose, 12).x + pen.size(warning, 12).x + 4 * m < l.split;
+    if (room)
+        pen.put_right(l.split - m, base - 1.25F * step, ink, warning, 12);
+    else
+        pen.put(m, base - 3.9F * step, ink, warning, 12);
 }
 
-void draw_force_bar(const Pen& pen, const HudForce& f, double alarm_share, const HudRect& r) {
+// From the alarm on, a bar without colours is told apart by stripes.
+void stripe(ImDrawList* list, const HudRect& r, float to, float step) {
+    list->PushClipRect(ImVec2(r.x0, r.y0), ImVec2(to, r.y1), true);
+    for (float x = r.x0; x < to + (r.y1 - r.y0); x += step)
+        list->AddLine(ImVec2(x, r.y0), ImVec2(x - (r.y1 - r.y0), r.y1), IM_COL32(0, 0, 0, 255), 0.35F * step);
+    list->PopClipRect();
+}
+
+void draw_force_bar(const Pen& pen, const HudForce& f, double alarm_share, bool plain, const HudRect& r) {
     const double share = std::clamp(f.force_n / std::max(1e-9, f.limit_n), 0.0, 1.0);
     const bool at_alarm = f.judged && share >= alarm_share, at_stop = f.judged && share >= 1.0;
-    const ImU32 color = at_stop ? stop : (at_alarm ? alarm : calm);
+    const ImU32 white = IM_COL32(255, 255, 255, 255);
+    const ImU32 color = plain ? white : at_stop ? stop : (at_alarm ? alarm : calm);
+    const ImU32 alarm_mark = plain ? white : alarm, stop_mark = plain ? white : stop;
     ImDrawList* list = pen.list();
     list->AddRectFilled(ImVec2(r.x0, r.y0), ImVec2(r.x1, r.y1), IM_COL32(48, 56, 62, 255));
     list->AddRectFilled(ImVec2(r.x0, r.y0), ImVec2(r.x0 + static_cast<float>(share) * (r.x1 - r.x0), r.y1), color);
     const float s = pen.scale();
+    if (plain && at_alarm)
+        stripe(list, r, r.x0 + static_cast<float>(share) * (r.x1 - r.x0), (at_stop ? 5.0F : 10.0F) * s);
     const float y = r.y0 - pen.line();
     pen.put(r.x0, y, f.judged ? ink : faint, f.name);
     if (!f.judged) {
@@ -97,8 +115,8 @@ void draw_force_bar(const Pen& pen, const HudForce& f, double alarm_share, const
         return;
     }
     const float mark = r.x0 + static_cast<float>(alarm_share) * (r.x1 - r.x0);
-    list->AddLine(ImVec2(mark, r.y0 - 3 * s), ImVec2(mark, r.y1 + 3 * s), alarm, 2 * s);
-    list->AddRectFilled(ImVec2(r.x1, r.y0 - 4 * s), ImVec2(r.x1 + 3 * s, r.y1 + 4 * s), stop);
+    list->AddLine(ImVec2(mark, r.y0 - 3 * s), ImVec2(mark, r.y1 + 3 * s), alarm_mark, 2 * s);
+    list->AddRectFilled(ImVec2(r.x1, r.y0 - 4 * s), ImVec2(r.x1 + 3 * s, r.y1 + 4 * s), stop_mark);
     const std::string state = at_stop ? "STOP  " : (at_alarm ? "ALARM  " : "");
     pen.put_right(r.x1 + 3 * s, y, at_alarm ? color : ink, state + text("%.2f / %.2f N", f.force_n, f.limit_n));
 }
@@ -139,7 +157,7 @@ void draw_panels(const HudData& d, const HudLayout& l) {
                                   5 * l.scale);
         if (!d.insertion.empty()) pen.put(l.split + 16 * l.scale, bars_top - 0.8F * step, faint, d.insertion, 12);
         for (std::size_t i = 0; i < count; ++i)
-            draw_force_bar(pen, d.forces[i], d.alarm_share, force_bar_rect(l, count, i));
+            draw_force_bar(pen, d.forces[i], d.alarm_share, d.high_contrast, force_bar_rect(l, count, i));
         for (std::size_t i = 0; i < shown; ++i) {
             const float up = static_cast<float>(shown - i) + 0.3F;
             pen.put(l.split + 14 * l.scale, panel_top - up * step, ink, d.messages[d.messages.size() - shown + i], 13);

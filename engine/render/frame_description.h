@@ -98,11 +98,15 @@ struct FrameCamera {
     double light_range_mm = 32;     ///< where the headlight has fallen to a quarter
 };
 
+/// What colours the wall in the outer view.
+enum class OuterMap { force, displacement };
+
 struct FrameDescription {
     int width = 1024;  ///< of the whole picture, pixels
     int height = 512;
     bool show_fluoroscopy = true;
     bool show_inner_view = true;
+    bool show_outer_view = false;  ///< third person: below the inner view, or in its place
 
     std::uint64_t seed = 1;
     std::uint64_t frame_index = 0;  ///< noise is a pure function of (seed, frame_index, pixel)
@@ -115,6 +119,8 @@ struct FrameDescription {
     FrameLumen lumen;
     std::vector<FrameDevice> devices;
     std::optional<FrameCamera> inner_camera;
+    std::optional<FrameCamera> outer_camera;
+    OuterMap outer_map = OuterMap::displacement;
     double wall_force_limit_n = 0.8;  ///< wall_force_n of this size is shown in full alarm colour
     HudDrawList overlay;              ///< painted last; may be empty
 };

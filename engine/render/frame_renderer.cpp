@@ -7,6 +7,7 @@
 #include "render/fluoroscope.h"
 #include "render/gl_device.h"
 #include "render/inner_view.h"
+#include "render/outer_view.h"
 #include "render/overlay.h"
 
 namespace cathlab {
@@ -14,13 +15,19 @@ namespace cathlab {
 FrameLayout layout_of(const FrameDescription& frame) {
     FrameLayout layout;
     const int w = frame.width, h = frame.height;
+    const bool beside = frame.show_inner_view || frame.show_outer_view;
+    FrameRect rest{0, 0, w, h};
     if (frame.show_fluoroscopy) {
-        const int side = frame.show_inner_view ? std::min(h, w / 2) : std::min(h, w);
-        layout.fluoroscopy = {frame.show_inner_view ? 0 : (w - side) / 2, (h - side) / 2, side, side};
-        if (frame.show_inner_view) layout.inner_view = {side, (h - side) / 2, w - side, side};
-    } else if (frame.show_inner_view) {
-        layout.inner_view = {0, 0, w, h};
+        const int side = beside ? std::min(h, w / 2) : std::min(h, w);
+        layout.fluoroscopy = {beside ? 0 : (w - side) / 2, (h - side) / 2, side, side};
+        rest = {side, (h - side) / 2, w - side, side};
     }
+    if (!beside) return layout;
+    const int upper = frame.show_inner_view && frame.show_outer_view ? rest.height / 2 : rest.height;
+    if (frame.show_inner_view) layout.inner_view = {rest.x, rest.y, rest.width, upper};
+    if (frame.show_outer_view)
+        layout.outer_view = frame.show_inner_view ? FrameRect{rest.x, rest.y + upper, rest.width, rest.height - upper}
+                                                  : rest;
     return layout;
 }
 
@@ -29,10 +36,12 @@ struct FrameRenderer::Impl {
         : device(std::make_shared<GlDevice>(std::move(target))),
           fluoroscope(device, workers),
           inner_view(device),
+          outer_view(device),
           overlay(device) {}
     GlDevicePtr device;
     Fluoroscope fluoroscope;
     InnerView inner_view;
+    OuterView outer_view;
     Overlay overlay;
     Image8 part;
     std::function<void(std::string_view)> probe;
@@ -68,6 +77,11 @@ void FrameRenderer::render(const FrameDescription& frame, Image8& out) {
         impl_->begin("inner view");
         impl_->inner_view.draw(frame, layout.inner_view.width, layout.inner_view.height, impl_->part);
         paste(out, impl_->part, layout.inner_view.x, layout.inner_view.y);
+    }
+    if (layout.outer_view.width > 0) {
+        impl_->begin("outer view");
+        impl_->outer_view.draw(frame, layout.outer_view.width, layout.outer_view.height, impl_->part);
+        paste(out, impl_->part, layout.outer_view.x, layout.outer_view.y);
     }
     impl_->begin("overlay");
     impl_->overlay.draw(frame.overlay, out);

@@ -21,10 +21,10 @@ struct FrameRect {
     int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Where the parts of a picture stand.  Both views: the fluoroscopy takes a square at the left, the inner view the
-/// rest; one view: the largest centred square (fluoroscopy) or everything (inner view).
+/// Where the parts of a picture stand.  The fluoroscopy takes a square at the left, inner and outer view the rest, one
+/// above the other where both are shown; one view alone: the largest centred square (fluoroscopy) or everything.
 struct FrameLayout {
-    FrameRect fluoroscopy, inner_view;
+    FrameRect fluoroscopy, inner_view, outer_view;
 };
 FrameLayout layout_of(const FrameDescription& frame);
 
@@ -51,7 +51,8 @@ public:
     /// Forgets the last frames (temporal filter, held image): the start of another run.
     void reset();
     std::string description() const;
-    /// Called in render() as each part begins ("fluoroscopy", "inner view", "overlay"), for measuring.
+    /// Called in render() as each part begins ("fluoroscopy", "inner view", "outer view",
+    /// "overlay"), for measuring.
     void set_probe(std::function<void(std::string_view part)> begin);
 
 private:
