@@ -84,7 +84,9 @@ void add_play_command(CLI::App& app, AppContext& context) {
     command->add_flag("--no-sound", options.silent, "open no loudspeaker");
     command->add_option("--tour", arguments->tour,
                         "walks through every screen without a display; pictures into a folder");
-    command->add_option("--measure", arguments->measure_s, "plays by itself for so many seconds and prints how fast it was")
+    command
+        ->add_option("--measure", arguments->measure_s,
+                     "plays by itself for so many seconds and prints how fast it was")
         ->check(CLI::Range(1.0, 86400.0));
     command->callback([arguments, &context] { run_play(*arguments, context); });
 }

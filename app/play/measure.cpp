@@ -37,9 +37,11 @@ void measure(PlayOptions options, const AppContext& context, double seconds) {
     options.at_once = true;
     options.task.clear();
     PlayApp app(options, context);
-    while (app.screen() == Screen::loading && app.frame(1.0 / 60.0)) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    while (app.screen() == Screen::loading && app.frame(1.0 / 60.0))
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
     std::printf("window: %s\n", app.window().description().c_str());
-    std::printf("from the start of the program's window to the first frame that can be steered: %.2f s\n", since(begin));
+    std::printf("from the start of the program's window to the first frame that can be steered: %.2f s\n",
+                since(begin));
     const auto playing = Clock::now();
     send_key(SDL_SCANCODE_SPACE, true);
     std::uint64_t turns = 0;

@@ -1,11 +1,15 @@
 #include "play/painter.h"
 
+#include <sys/resource.h>
+
 #include <utility>
 
 namespace cathlab::play {
 namespace {
 
 constexpr double quick_view_s = 1.0 / 40.0;  // the views without X-rays come at most so often
+
+constexpr int painter_niceness = 10;
 
 }  // namespace
 
@@ -24,6 +28,8 @@ Painter::~Painter() {
 }
 
 void Painter::loop(const MakeTarget& make_target) {
+    // On Linux this is the thread's own: where processors are short, pictures wait and the simulation does not.
+    ::setpriority(PRIO_PROCESS, 0, painter_niceness);
     try {
         renderer_ = std::make_unique<FrameRenderer>(make_target());
         while (!stopping_) {

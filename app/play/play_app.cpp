@@ -237,9 +237,7 @@ void PlayApp::act(Control control) {
             settings_.view.fullscreen = !settings_.view.fullscreen;
             window_.set_fullscreen(settings_.view.fullscreen);
             break;
-        case Control::view:
-            next_side();
-            break;
+        case Control::view: next_side(); break;
         case Control::reference:
             if (fluoroscopy_.rgb.empty()) {
                 say("there is no picture yet to keep: X-rays first");
@@ -457,7 +455,7 @@ void PlayApp::compose() {
         } else {
             pictures_.push_back({&outer_, layout_.side, outer_revision_});
         }
-        HudData panels = status_.panels;
+        HudData& panels = shown_panels_ = status_.panels;
         panels.running = !status_.paused;
         panels.high_contrast = settings_.view.palette == "high-contrast";
         panels.real_time_factor = status_.real_time_factor;
@@ -469,6 +467,13 @@ void PlayApp::compose() {
         lists_.push_back(&hud_list_);
     }
     lists_.push_back(&ui_list_);
+}
+
+Image8 PlayApp::picture_without_screens() {
+    lists_.pop_back();
+    Image8 out = picture();
+    lists_.push_back(&ui_list_);
+    return out;
 }
 
 void PlayApp::draw_window() {

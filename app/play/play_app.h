@@ -58,6 +58,11 @@ public:
 
     /// What the window shows, as a picture.
     Image8 picture();
+    /// The same without menus, toasts and buttons: what a film has.
+    Image8 picture_without_screens();
+    /// The panels as they were drawn last.
+    const HudData& panels() const { return shown_panels_; }
+    float hud_scale() const { return hud_scale_; }
 
     Screen screen() const { return screen_; }
     Side side() const { return side_; }
@@ -154,6 +159,7 @@ private:
     std::uint64_t fluoroscopy_revision_ = 0, inner_revision_ = 0, outer_revision_ = 0, kept_revision_ = 0;
     ScreenLayout layout_;
     HudDrawList hud_list_, ui_list_;
+    HudData shown_panels_;
     std::vector<WindowPicture> pictures_;
     std::vector<const HudDrawList*> lists_;
     bool shot_wanted_ = false;

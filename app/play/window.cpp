@@ -17,6 +17,9 @@ public:
     SdlTarget(const SdlTarget&) = delete;
     SdlTarget& operator=(const SdlTarget&) = delete;
     void make_current() override {
+        // SDL leaves out what it believes to be so already; but an off-screen context may have come between on this
+        // thread, of which it does not know.
+        SDL_GL_MakeCurrent(window_, nullptr);
         if (SDL_GL_MakeCurrent(window_, context_) != 0)
             throw UserError(std::string("the window's OpenGL was lost: ") + SDL_GetError());
     }

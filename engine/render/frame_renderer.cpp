@@ -26,8 +26,8 @@ FrameLayout layout_of(const FrameDescription& frame) {
     const int upper = frame.show_inner_view && frame.show_outer_view ? rest.height / 2 : rest.height;
     if (frame.show_inner_view) layout.inner_view = {rest.x, rest.y, rest.width, upper};
     if (frame.show_outer_view)
-        layout.outer_view = frame.show_inner_view ? FrameRect{rest.x, rest.y + upper, rest.width, rest.height - upper}
-                                                  : rest;
+        layout.outer_view =
+            frame.show_inner_view ? FrameRect{rest.x, rest.y + upper, rest.width, rest.height - upper} : rest;
     return layout;
 }
 
