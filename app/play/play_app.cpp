@@ -51,6 +51,7 @@ PlayApp::PlayApp(PlayOptions options, const AppContext& context)
       pads_(data_home()),
       loader_(context),
       choices_(find_choices(context.data_root)) {
+    fullscreen_ = settings_.view.fullscreen = settings_.view.fullscreen || options_.window.fullscreen;
     if (!options_.silent) tones_.emplace();
     for (const std::string& note : {settings_fault_, window_.note(), pads_.fault(), tones_ ? tones_->fault() : ""})
         if (!note.empty()) {
@@ -177,6 +178,7 @@ void PlayApp::open(Panel panel) {
         sim_->set_paused(true);
     }
     panels_.push_back(panel);
+    toasts_.clear();  // what was said about playing would lie over the panel
     ui_feed_.release();
 }
 
@@ -233,10 +235,7 @@ void PlayApp::act(Control control) {
             settings_.sound.enabled = !settings_.sound.enabled;
             say(settings_.sound.enabled ? "Sound on" : "Sound off");
             break;
-        case Control::fullscreen:
-            settings_.view.fullscreen = !settings_.view.fullscreen;
-            window_.set_fullscreen(settings_.view.fullscreen);
-            break;
+        case Control::fullscreen: settings_.view.fullscreen = !settings_.view.fullscreen; break;
         case Control::view: next_side(); break;
         case Control::reference:
             if (fluoroscopy_.rgb.empty()) {
@@ -314,6 +313,7 @@ void PlayApp::make_fonts() {
         style.ScaleAllSizes(std::max(0.5F, em / 14.0F));
         style.WindowRounding = 0.4F * em;
         style.FrameRounding = 0.25F * em;
+        style.Colors[ImGuiCol_WindowBg].w = 1.0F;  // no letters behind letters
     }
     layout_.em = ui_->font_px();
     const auto column = layout_.width - static_cast<float>(layout_.fluoroscopy.width);
@@ -340,7 +340,7 @@ void PlayApp::lay_out() {
     const float bars = force_bar_rect(hud, std::max<std::size_t>(1, status_.panels.forces.size()), 0).y0;
     const auto free = static_cast<int>(bars - 2.6F * step - 4.0F * hud_scale_ - 3.4F * step);
     const int column = w - side;
-    const int panel = std::min(std::max(0, free), static_cast<int>(7.4F * layout_.em));
+    const int panel = std::min(std::max(0, free), static_cast<int>(8.4F * layout_.em));
     const int view = std::max(0, free - panel);
     layout_.side = view >= 64 && column >= 64 ? FrameRect{side, 0, column, view} : FrameRect{};
     layout_.panel = column >= 64 && panel >= 32 ? FrameRect{side, view, column, panel} : FrameRect{};
@@ -551,6 +551,10 @@ bool PlayApp::frame(double dt) {
         }
     }
     hands();
+    if (settings_.view.fullscreen != fullscreen_) {
+        fullscreen_ = settings_.view.fullscreen;
+        window_.set_fullscreen(fullscreen_);
+    }
     say(clip_.report());
     if (sim_) {
         if (!options_.threaded) sim_->run_for(dt);

@@ -142,7 +142,7 @@ private:
 
     Screen screen_ = Screen::start;
     std::vector<Panel> panels_;
-    bool quit_ = false, hands_open_ = false, was_paused_ = false;
+    bool quit_ = false, fullscreen_ = false, hands_open_ = false, was_paused_ = false;
     Side side_ = Side::inner;
     SettingsView settings_view_;
     ResultView result_;
