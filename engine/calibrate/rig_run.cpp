@@ -218,7 +218,7 @@ void check_stress(const WallRig& rig, double stress_kpa) {
 }  // namespace
 
 bool makes_the_wall(const EffectInfo& info) {
-    constexpr unsigned wall = hook_material | hook_constraint | hook_force;
+    constexpr unsigned wall = hook_material | hook_constraint | hook_force | hook_membrane | hook_slip;
     return (info.hooks & wall) != 0 && (info.hooks & ~wall) == 0;
 }
 

@@ -48,6 +48,7 @@ void visit(Archive& archive, CatheterState& state) {
     archive.field("rotation_rad", state.rotation_rad);
     archive.field("bend_rad", state.bend_rad);
     archive.field("direction_rad", state.direction_rad);
+    if (!state.taper.empty()) archive.field("taper", state.taper);
     archive.field("route", state.route);
 }
 

@@ -13,11 +13,22 @@ struct Piece {
     double length, bend, direction;
 };
 
+constexpr int parts_of_a_taper = 6;  // of a segment whose curvature changes along it
+
 std::vector<Piece> pieces_of(const CatheterSpec& spec, const CatheterState& state) {
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i < spec.segments.size(); ++i) {
         if (i > 0 && spec.link_length_mm > 0.0) pieces.push_back({spec.link_length_mm, 0.0, 0.0});
-        pieces.push_back({spec.segments[i].length_mm, state.bend_rad[i], state.direction_rad[i]});
+        const double taper = i < state.taper.size() ? state.taper[i] : 0.0;
+        if (taper == 0.0) {
+            pieces.push_back({spec.segments[i].length_mm, state.bend_rad[i], state.direction_rad[i]});
+            continue;
+        }
+        for (int k = 0; k < parts_of_a_taper; ++k) {
+            const double share = (1.0 + taper * ((2.0 * k + 1.0) / parts_of_a_taper - 1.0)) / parts_of_a_taper;
+            pieces.push_back(
+                {spec.segments[i].length_mm / parts_of_a_taper, share * state.bend_rad[i], state.direction_rad[i]});
+        }
     }
     if (spec.tip_length_mm > 0.0) pieces.push_back({spec.tip_length_mm, 0.0, 0.0});
     return pieces;

@@ -18,6 +18,13 @@ std::span<const EffectInfo> effect_table() {
     return table;
 }
 
+void ask_membrane(std::span<Effect* const> effects, const EffectContext& context, const MembraneMaterial& material,
+                  const Fibres& fibres, MembranePoint& point) {
+    for (Effect* effect : effects) effect->strain(context, point);
+    ask_elastic_law(material, fibres, point);
+    for (Effect* effect : effects) effect->stress(context, point);
+}
+
 const EffectInfo* find_effect(std::string_view name) {
     std::string key(name);
     std::replace(key.begin(), key.end(), '-', '_');
@@ -33,8 +40,8 @@ std::string spoken_name(const EffectInfo& info) {
 }
 
 std::vector<std::string_view> hook_names(unsigned hooks) {
-    constexpr std::array<std::string_view, 7> names{"input", "drive",   "material", "constraint",
-                                                    "force", "measure", "actuation"};
+    constexpr std::array<std::string_view, 9> names{"input",   "drive",     "material", "constraint", "force",
+                                                    "measure", "actuation", "membrane", "slip"};
     std::vector<std::string_view> out;
     for (std::size_t i = 0; i < names.size(); ++i)
         if ((hooks >> i) & 1U) out.push_back(names[i]);

@@ -6,6 +6,8 @@
 //   actuation   between the catheter's drive and its shape: cables, shaft, friction
 //   drive       moves supports and the heart
 //   material    constitutive: scales the wall's stiffness, particle by particle
+//   membrane    constitutive: the elastic wall's law, point by point: strain that bears no stress, stress, memory
+//   slip        how far what holds the wall gives way under what pulls at it
 //   constraint  anchors that the solver owns and evaluates inside its solve (never an explicit stiff force)
 //   force       explicit, bounded forces on wall particles
 //   measure     what a sensor would read: the channels, last of all
@@ -24,6 +26,7 @@
 #include "core/parameter.h"
 #include "core/types.h"
 #include "softbody/fibres.h"
+#include "softbody/membrane.h"
 
 namespace cathlab {
 
@@ -49,6 +52,9 @@ struct EffectContext {
 struct ActuatedSegment {
     double length_mm = 0.0;
     Vec2 bend_rad = Vec2::Zero();  ///< angle between its ends, towards x and y of the device's base frame
+    /// How unevenly the bend lies along the segment: curvature (bend / length) (1 + taper (2 s / length - 1)); -1 = all at
+    /// its base and none at its end.
+    double taper = 0.0;
     double tendon_radius_mm = 0.0;
     std::vector<double> tendon_rad, tendon_mm;  ///< (tendons) place around the axis; length pulled at the drive
 };
@@ -84,6 +90,13 @@ struct WallAnchor {
     double stiffness = 0.0;      ///< mN/mm, > 0
 };
 
+/// `slip`: one place at which the wall is held.
+struct HeldPoint {
+    std::size_t index = 0;
+    Vec3 traction = Vec3::Zero();  ///< of the wall on what holds it, kPa of the wall's section
+    Vec3 slipped = Vec3::Zero();   ///< where what holds it has gone, mm: effects add to it
+};
+
 class Effect {
 public:
     virtual ~Effect() = default;
@@ -93,6 +106,21 @@ public:
     virtual void material(const EffectContext& /*context*/, std::span<double> /*stiffness_scale: (n), 1 = as built*/) {}
     /// `material` of an elastic wall: the fibres in it.
     virtual void fibres(const EffectContext& /*context*/, Fibres& /*fibres*/) {}
+    /// `material`: adds to the foundation that holds each particle where its support stands.
+    virtual void surroundings(const EffectContext& /*context*/, std::span<double> /*kpa_per_mm: (n), add to it*/) {}
+    /// `membrane`: so many points there are; before any is asked.
+    virtual void points(std::size_t /*count*/) {}
+    /// Takes from point.c what bears no stress.  As stress(): no lasting change, for a solver may ask many times; calls
+    /// for different points come from several threads.
+    virtual void strain(const EffectContext& /*context*/, MembranePoint& /*point*/) {}
+    /// Changes point.stress, which the elastic law has written with energy_kpa, and point.at_once where the wall is
+    /// stiffer than that law when strained at once.
+    virtual void stress(const EffectContext& /*context*/, MembranePoint& /*point*/) {}
+    /// The (sub)step is over and has ended so.
+    virtual void remember(const EffectContext& /*context*/, const MembranePoint& /*point*/) {}
+    /// Adds to `slipped`; no lasting change, as stress().
+    virtual void slip(const EffectContext& /*context*/, HeldPoint& /*held*/) {}
+    virtual void remember_slip(const EffectContext& /*context*/, const HeldPoint& /*held*/) {}
     virtual void constraint(const EffectContext& /*context*/, std::vector<WallAnchor>& /*anchors*/) {}
     virtual void force(const EffectContext& /*context*/, std::span<Vec3> /*force: (n) mN, add to it*/) {}
     virtual void measure(const EffectContext& /*context*/, Channels& /*channels*/) {}
@@ -108,6 +136,8 @@ enum Hook : unsigned {
     hook_force = 16U,
     hook_measure = 32U,
     hook_actuation = 64U,
+    hook_membrane = 128U,
+    hook_slip = 256U,
 };
 
 struct EffectInfo {
@@ -120,9 +150,15 @@ struct EffectInfo {
     std::vector<Parameter> parameters;
     /// Parameters that say how strong it is: with all of them 0 it does nothing, to the bit.
     std::vector<std::string_view> strengths = {};
+    /// Parameters whose ends are meanings (none, every direction) and not a claim of how far a mechanism goes.
+    std::vector<std::string_view> meant_ends = {};
     std::unique_ptr<Effect> (*make)(std::span<const double> values) = nullptr;  ///< values in the order of `parameters`
     bool elastic_wall = false;  ///< acts on the wall's elastic form alone; a scene with the other one is refused
 };
+
+/// The law of a membrane's point with effects in it: strain, elastic law, stress.
+void ask_membrane(std::span<Effect* const> effects, const EffectContext& context, const MembraneMaterial& material,
+                  const Fibres& fibres, MembranePoint& point);
 
 /// All effects, in the order of effects.inl.
 std::span<const EffectInfo> effect_table();

@@ -89,18 +89,21 @@ private:
         act.tip_length_mm = spec_.tip_length_mm;
         act.segments.resize(2);
         act.segments[0].length_mm = spec_.segments[0].length_mm;
+        act.segments[0].taper = act.segments[1].taper = 0.0;
         act.segments[0].bend_rad = Vec2((*proximal_)[i] * units::deg, 0.0);
         act.segments[1].length_mm = spec_.segments[1].length_mm;
         act.segments[1].bend_rad = Vec2((*distal_)[i] * units::deg, 0.0);
     }
 
     Vec3 place(const Actuation& act, CatheterState& state) const {
+        state.taper.resize(act.segments.size());
         state.insertion_mm = std::max(0.0, behind_mm + act.insertion_mm + spec_.steerable_length_mm());
         state.rotation_rad = act.rotation_rad;
         for (std::size_t k = 0; k < act.segments.size(); ++k) {
             const Vec2& b = act.segments[k].bend_rad;
             state.bend_rad[k] = std::sqrt(b.squaredNorm());
             state.direction_rad[k] = det::atan2(b.y(), b.x());
+            state.taper[k] = act.segments[k].taper;
         }
         return shape(spec_, state, rail_, one_sample_mm).tip.position;
     }

@@ -21,6 +21,47 @@ bool is_direction(const Parameter& p) {
     return p.key.starts_with("direction");
 }
 
+/// Numbers that may be of any size between a trace and a mountain are searched by their logarithm:
+/// q = ln(1 + v / usual).
+class Scale {
+public:
+    explicit Scale(const Parameter& p) : usual_(p.default_value) {
+        constexpr double wide = 50.0;
+        logarithmic_ = p.minimum >= 0.0 && usual_ > 0.0 && p.maximum > wide * usual_;
+    }
+    double to(double v) const { return logarithmic_ ? std::log1p(v / usual_) : v; }
+    double from(double q) const { return logarithmic_ ? usual_ * std::expm1(q) : q; }
+
+private:
+    double usual_;
+    bool logarithmic_ = false;
+};
+
+/// Other numbers for what only shapes an effect: near each end of the range of one of them, then all spread over their
+/// ranges.  False where there are no more.
+bool reshape(const EffectInfo& effect, const std::vector<bool>& free, int number, std::vector<double>& values) {
+    constexpr int spread = 2;  // shapes in which all differ
+    std::vector<std::size_t> shapes;
+    for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
+        const Parameter& p = effect.parameters[k];
+        if (free[k] && !is_strength(effect, p) && !is_phase(p) && !is_direction(p) && p.key != "period_s")
+            shapes.push_back(k);
+    }
+    const int single = 2 * static_cast<int>(shapes.size());
+    if (shapes.empty() || number > single + spread) return false;
+    for (std::size_t j = 0; j < shapes.size(); ++j) {
+        const Parameter& p = effect.parameters[shapes[j]];
+        double place = number % 2 == 1 ? 0.05 : 0.95;
+        if (number > single)  // points that fill a box evenly, one after another
+            place = std::fmod(number * (0.618 + 0.137 * static_cast<double>(j)), 1.0);
+        else if (static_cast<std::size_t>((number - 1) / 2) != j)
+            continue;
+        const Scale scale(p);
+        values[shapes[j]] = scale.from(scale.to(p.minimum) + place * (scale.to(p.maximum) - scale.to(p.minimum)));
+    }
+    return true;
+}
+
 std::vector<double> defaults(const EffectInfo& effect) {
     std::vector<double> out;
     for (const Parameter& p : effect.parameters) out.push_back(p.default_value);
@@ -46,12 +87,19 @@ std::string why_no_effect(const EffectTrial& trial, const std::vector<bool>& fre
         const Parameter& p = trial.effect->parameters[k];
         if (!free[k]) continue;
         const double value = trial.values[k], range = p.maximum - p.minimum;
-        if (is_strength(*trial.effect, p) && std::fabs(value) > near * range) strong = true;
+        const double least = p.default_value > 0.0 ? std::min(near * range, 0.01 * p.default_value) : near * range;
+        if (is_strength(*trial.effect, p) && std::fabs(value) > least) strong = true;
         if (is_phase(p) || is_direction(p)) continue;
         // 0 and 1 are ends by meaning (none, all of it), not by the range that somebody chose.
-        const auto natural = [&](double bound) { return bound == 0.0 || (bound == 1.0 && p.unit == "1"); };
-        const bool low = value - p.minimum < near * range && !natural(p.minimum);
-        const bool high = p.maximum - value < near * range && !natural(p.maximum);
+        const auto& ends = trial.effect->meant_ends;
+        const bool meant = std::find(ends.begin(), ends.end(), p.key) != ends.end();
+        const auto natural = [&](double bound) {
+            return meant || bound == 0.0 || (bound == 1.0 && p.unit == "1");
+        };
+        const Scale scale(p);
+        const double place = scale.to(value), from = scale.to(p.minimum), to = scale.to(p.maximum);
+        const bool low = place - from < near * (to - from) && !natural(p.minimum);
+        const bool high = to - place < near * (to - from) && !natural(p.maximum);
         if (low || high) return "its '" + std::string(p.key) + "' ends on a bound of its range";
     }
     return strong ? "" : "its strength is zero";
@@ -78,15 +126,17 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
         for (std::size_t k = 0; k < trial.values.size(); ++k) {
             const Parameter& p = trial.effect->parameters[k];
             const double v = std::clamp(trial.values[k], p.minimum, p.maximum);
-            Bound bound{p.minimum, p.maximum, std::string(p.key)};
+            const Scale scale(p);
+            Bound bound{scale.to(p.minimum), scale.to(p.maximum), std::string(p.key)};
             if (is_phase(p)) bound = {p.minimum - 1.0, p.maximum + 1.0, bound.name};  // goes round
-            if (!free[k]) bound.lower = bound.upper = v;
+            const double range = bound.upper - bound.lower;
+            if (!free[k]) bound.lower = bound.upper = scale.to(v);
             problem.bounds.push_back(bound);
-            problem.start.push_back(v);
+            problem.start.push_back(scale.to(v));
             // A trace of ridge towards no effect, and towards the usual value of what only shapes it: numbers that the
             // data cannot tell stay there.
-            weights.push_back(free[k] ? 3e-3 * std::sqrt(rows) / (p.maximum - p.minimum) : 0.0);
-            centres.push_back(is_strength(*trial.effect, p) ? 0.0 : p.default_value);
+            weights.push_back(free[k] ? 3e-3 * std::sqrt(rows) / range : 0.0);
+            centres.push_back(is_strength(*trial.effect, p) ? 0.0 : scale.to(p.default_value));
         }
         for (std::size_t run = 0; run < trial.phase_of_run.size(); ++run) {
             problem.bounds.push_back({run == 0 ? 0.0 : -1.0, run == 0 ? 0.0 : 1.0, "phase of run"});
@@ -104,7 +154,11 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
         std::size_t at = base.size();
         to.base.assign(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(at));
         for (EffectTrial& trial : to.effects) {
-            for (double& v : trial.values) v = x[at++];
+            for (std::size_t k = 0; k < trial.values.size(); ++k) {
+                const Parameter& p = trial.effect->parameters[k];
+                trial.values[k] = is_phase(p) ? x[at] : std::clamp(Scale(p).from(x[at]), p.minimum, p.maximum);
+                ++at;
+            }
             for (double& v : trial.phase_of_run) v = x[at++];
         }
     };
@@ -176,29 +230,33 @@ FittedModel Fitter::begin(std::span<const EffectInfo* const> declared) {
 
 bool Fitter::learn(const EffectInfo& effect) {
     const std::vector<double> base = rig_.start();
-    const std::vector<double> usual = acting(effect);
+    const std::size_t count = effect.parameters.size();
     const auto residual = [&](const std::vector<double>& values) {
         const EffectTrial trial{&effect, values};
         return rig_.residual(base, std::span(&trial, 1));
     };
-    const Columns there = residual(usual);
-    std::vector<bool> out;
-    for (std::size_t k = 0; k < usual.size(); ++k) {
-        const Parameter& p = effect.parameters[k];
-        bool matters = false;
-        if (rig_.takes_up(effect, p.key)) {
-            out.push_back(false);
-            continue;
+    std::vector<bool> may(count), out(count, false);
+    for (std::size_t k = 0; k < count; ++k) may[k] = !rig_.takes_up(effect, effect.parameters[k].key);
+    for (int shape = 0;; ++shape) {
+        std::vector<double> usual = acting(effect);
+        if (shape > 0 && (!reshape(effect, may, shape, usual) || out == may)) break;
+        const Columns there = residual(usual);
+        for (std::size_t k = 0; k < count; ++k) {
+            const Parameter& p = effect.parameters[k];
+            bool matters = out[k];
+            for (const double part : {0.13, 0.71}) {
+                if (!may[k] || matters) break;
+                std::vector<double> other = usual;
+                other[k] = usual[k] + part * ((part < 0.5 ? p.minimum : p.maximum) - usual[k]);
+                const Columns here = residual(other);
+                for (std::size_t c = 0; c < here.size() && !matters; ++c)
+                    for (std::size_t i = 0; i < here[c].size() && !matters; ++i)
+                        matters = std::fabs(here[c][i] - there[c][i]) > 1e-7;
+            }
+            out[k] = matters;
         }
-        for (const double part : {0.13, 0.71}) {
-            std::vector<double> other = usual;
-            other[k] = usual[k] + part * ((part < 0.5 ? p.minimum : p.maximum) - usual[k]);
-            const Columns here = residual(other);
-            for (std::size_t c = 0; c < here.size() && !matters; ++c)
-                for (std::size_t i = 0; i < here[c].size() && !matters; ++i)
-                    matters = std::fabs(here[c][i] - there[c][i]) > 1e-7;
-        }
-        out.push_back(matters);
+        // An effect that acts as it usually does is known by that.
+        if (std::find(out.begin(), out.end(), true) != out.end() && rig_.bounds().empty()) break;
     }
     const bool any = std::find(out.begin(), out.end(), true) != out.end();
     free_[&effect] = std::move(out);
@@ -220,10 +278,26 @@ std::vector<std::vector<double>> Fitter::starts(const FittedModel& from, const E
                 const Parameter& p = effect.parameters[k];
                 if (!free[k] || !is_strength(effect, p)) continue;
                 turned = turned || p.minimum < 0.0;
-                values[k] = std::clamp((p.minimum < 0.0 ? sign : 1.0) * level * p.maximum, p.minimum, p.maximum);
+                const Scale scale(p);
+                values[k] = std::clamp(scale.from((p.minimum < 0.0 ? sign : 1.0) * level * scale.to(p.maximum)),
+                                       p.minimum, p.maximum);
             }
             // Half a turn of the phase is the other sign.
             if (sign > 0.0 || (turned && !swings)) levels.push_back(values);
+        }
+    }
+    // What only shapes it may matter as much as its strength.
+    if (period == effect.parameters.size()) {
+        const std::size_t plain = levels.size();
+        for (int other = 1;; ++other) {
+            std::vector<double> any;
+            for (std::size_t level = 0; level < plain; ++level) {
+                std::vector<double> values = levels[level];
+                if (!reshape(effect, free, other, values)) break;
+                any = values;
+                levels.push_back(std::move(values));
+            }
+            if (any.empty()) break;
         }
     }
     const std::size_t ways = levels.size();
@@ -307,7 +381,10 @@ FittedModel Fitter::beside(const FittedModel& from, const EffectTrial& trial) co
 }
 
 FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) const {
-    constexpr std::size_t searched = 2;  // of each way that the effect may point
+    // Base numbers that are few go along from the beginning; where they are many, the effect looks where to go first.
+    constexpr std::size_t few = 2;
+    const bool base_too = rig_.bounds().size() <= few;
+    const std::size_t searched = base_too ? 4 : 2;  // of each way that the effect may point
     std::vector<FittedModel> tried[2];
     const std::vector<double> usual = defaults(effect);
     for (const std::vector<double>& values : starts(from, effect)) {
@@ -327,7 +404,7 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
     best.train_cost = std::numeric_limits<double>::infinity();
     for (std::vector<FittedModel>& way : tried)
         for (FittedModel& model : way) {
-            refit(model, 10, false);  // where to go, with the base numbers as they were
+            refit(model, 10, base_too);
             if (model.train_cost < best.train_cost) best = std::move(model);
         }
     refit(best, rig_.bounds().empty() ? 30 : 15);

@@ -45,6 +45,9 @@ void RigEffects::begin_run(Index run) {
         phase -= std::floor(phase);
         made_.push_back(trial.effect->make(values));
     }
+    of_membrane_.clear();
+    for (std::size_t k = 0; k < made_.size(); ++k)
+        if ((trials_[k].effect->hooks & hook_membrane) != 0) of_membrane_.push_back(made_[k].get());
     context_.step = -1;
     first_ = true;
 }
@@ -83,6 +86,35 @@ Vec3 RigEffects::read_tip(const Vec3& tip) {
     channels.catheter_tip_z_mm = tip.z();
     measure(channels);
     return {channels.catheter_tip_x_mm, channels.catheter_tip_y_mm, channels.catheter_tip_z_mm};
+}
+
+void RigEffects::points(std::size_t count) {
+    for (Effect* effect : of_membrane_) effect->points(count);
+}
+
+Fibres RigEffects::fibres() {
+    Fibres out;
+    for (std::size_t k = 0; k < made_.size(); ++k)
+        if ((trials_[k].effect->hooks & hook_material) != 0) made_[k]->fibres(context_, out);
+    return out;
+}
+
+void RigEffects::membrane(const MembraneMaterial& material, const Fibres& fibres, MembranePoint& point) {
+    ask_membrane(of_membrane_, context_, material, fibres, point);
+}
+
+void RigEffects::remember(const MembranePoint& point) {
+    for (Effect* effect : of_membrane_) effect->remember(context_, point);
+}
+
+void RigEffects::slip(HeldPoint& held) {
+    for (std::size_t k = 0; k < made_.size(); ++k)
+        if ((trials_[k].effect->hooks & hook_slip) != 0) made_[k]->slip(context_, held);
+}
+
+void RigEffects::remember_slip(const HeldPoint& held) {
+    for (std::size_t k = 0; k < made_.size(); ++k)
+        if ((trials_[k].effect->hooks & hook_slip) != 0) made_[k]->remember_slip(context_, held);
 }
 
 bool RigEffects::uses(unsigned hooks) const {

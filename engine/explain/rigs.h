@@ -29,9 +29,19 @@ public:
     Vec3 read_tip(const Vec3& tip);
     bool uses(unsigned hooks) const;
 
+    /// The wall's law: how many points it has (each recording begins with none of them strained), its fibres, what the
+    /// law makes of a point, and what is kept of it when the row is over.
+    void points(std::size_t count);
+    Fibres fibres();
+    void membrane(const MembraneMaterial& material, const Fibres& fibres, MembranePoint& point);
+    void remember(const MembranePoint& point);
+    void slip(HeldPoint& held);
+    void remember_slip(const HeldPoint& held);
+
 private:
     std::span<const EffectTrial> trials_;
     std::vector<std::unique_ptr<Effect>> made_;
+    std::vector<Effect*> of_membrane_;  // of those
     EffectContext context_;
     Drive drive_;
     bool first_ = true;

@@ -61,6 +61,7 @@ public:
         const bool read = effects.uses(hook_measure);
         CatheterState state = initial_state(spec_, behind_mm + spec_.steerable_length_mm());
         const std::size_t n = spec_.segments.size();
+        state.taper.assign(n, 0.0);
         const Vec3 marker(base[n * numbers_a_segment], base[n * numbers_a_segment + 1],
                           base[n * numbers_a_segment + 2]);
         Actuation act;
@@ -74,6 +75,7 @@ public:
                 const Vec2& b = act.segments[k].bend_rad;
                 state.bend_rad[k] = std::sqrt(b.squaredNorm());
                 state.direction_rad[k] = std::atan2(b.y(), b.x());
+                state.taper[k] = act.segments[k].taper;
             }
             Vec3 tip = shape(spec_, state, rail_, one_sample_mm).tip.to_world(marker);
             if (driven) tip += effects.drive().support_displacement[0];
@@ -122,6 +124,7 @@ private:
             const double* number = &base[k * numbers_a_segment];
             const Vec2 sum = tendon_sum(k, row);
             const double c = std::cos(number[0] * units::deg), t = std::sin(number[0] * units::deg);
+            s.taper = 0.0;
             s.bend_rad = number[1] * Vec2(c * sum.x() - t * sum.y(), t * sum.x() + c * sum.y()) +
                          units::deg * Vec2(number[2], number[3]);
             if (!whole) continue;

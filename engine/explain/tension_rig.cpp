@@ -1,40 +1,113 @@
-// Kind wall-tension: strain = stress / modulus.
+// Kind wall-tension: a strip, block or ring of the engine's elastic wall, pulled or pressed one way, in closed form.  Its
+// modulus is fitted, and how far it goes from the engine's neo-Hookean law to Hooke's: both call one number a modulus, and
+// a recording does not say which it means.
 #include <algorithm>
 #include <cmath>
 
 #include "core/errors.h"
-#include "explain/linear_part.h"
 #include "explain/rigs.h"
+#include "softbody/uniaxial.h"
 
 namespace cathlab {
 namespace {
 
+constexpr double poisson = 0.49;            // of arteries and silicones; the format does not say it
+constexpr double gauge_mm = 10.0;           // of a specimen whose length the format does not say
+constexpr double range = 4.0;               // of ln(modulus), to either side of the first guess
+constexpr double no_rest = 10.0;            // strain of a wall that no stretch brings to rest
+constexpr int parts_of_a_jump = 16;
+
 class TensionRig final : public Rig {
 public:
     TensionRig(const Dataset& data, const Split& split) : Rig(data, split) {
-        hooks_ = 0;
-        const std::vector<double>& stress = data.find("stress")->values;
-        basis_ = Basis::Zero(static_cast<Eigen::Index>(data.rows()), 1);
-        double most = 0.0;
+        hooks_ = hook_material | hook_membrane | hook_slip;
+        stress_ = &data.find("stress")->values;
+        double product = 0.0, square = 0.0;
         for (std::size_t i = 0; i < data.rows(); ++i) {
-            basis_(static_cast<Eigen::Index>(i), 0) = std::isnan(stress[i]) ? 0.0 : stress[i];
-            if (split.held_out[i] == 0) most = std::max(most, std::fabs(basis_(static_cast<Eigen::Index>(i), 0)));
+            const double strain = measured_[0]->values[i], stress = (*stress_)[i];
+            if (split.held_out[i] != 0 || std::isnan(strain) || std::isnan(stress)) continue;
+            product += strain * stress;
+            square += strain * strain;
         }
-        if (!(most > 0.0)) throw UserError(data.folder + ": the rows to be fitted hold no 'strain' with any input");
+        if (!(product != 0.0 && square > 0.0))
+            throw UserError(data.folder + ": the rows to be fitted hold no 'strain' with any input");
+        guess_kpa_ = std::fabs(product) / square;
     }
 
-    Columns residual(std::span<const double>, std::span<const EffectTrial>) const override {
+    std::vector<Bound> bounds() const override {
+        return {{-range, range, "ln(modulus / guess)"}, {0.0, 1.0, "hooke"}};
+    }
+    std::vector<double> start() const override { return {0.0, 0.5}; }
+
+    Columns residual(std::span<const double> base, std::span<const EffectTrial> trials) const override {
         Columns out{measured_[0]->values};
-        subtract(basis_, solve_linear(basis_, out[0], split_), out[0]);
+        RigEffects effects(trials);
+        MembraneMaterial material;
+        const double modulus_kpa = guess_kpa_ * std::exp(base[0]);
+        material.mu_kpa = modulus_kpa / (2.0 * (1.0 + poisson));
+        material.thinning = poisson / (1.0 - poisson);
+        material.round = Vec2(1.0, 0.0);  // pulled along the circumference
+        material.hooke = base[1];
+        Fibres fibres;
+        const auto law = [&](MembranePoint& point) { effects.membrane(material, fibres, point); };
+        Uniaxial at, before;
+        double last_stress = 0.0, before_stress = 0.0;
+        for (std::size_t i = 0; i < data_.rows(); ++i) {
+            if (i == 0 || data_.run[i] != data_.run[i - 1]) {
+                effects.begin_run(data_.run[i]);
+                effects.points(1);
+                fibres = effects.fibres();
+                at = before = {};
+                last_stress = before_stress = 0.0;
+            }
+            effects.next_row(data_.time_s[i]);
+            const double stress = std::isnan((*stress_)[i]) ? last_stress : (*stress_)[i];
+            Uniaxial next = at;
+            if (at.slope(0, 0) != 0.0 && last_stress != before_stress) {  // on the line through the last two
+                const double part = std::clamp((stress - last_stress) / (last_stress - before_stress), -1.0, 2.0);
+                next.along += part * (at.along - before.along);
+                next.across += part * (at.across - before.across);
+            }
+            bool found = uniaxial_rest(law, modulus_kpa, stress, next);
+            if (!found) {  // from nothing, in small parts
+                next = {};
+                found = true;
+                for (int k = 1; k <= parts_of_a_jump && found; ++k)
+                    found = uniaxial_rest(law, modulus_kpa, stress * k / parts_of_a_jump, next);
+            }
+            if (!found) {
+                out[0][i] -= no_rest;
+                continue;
+            }
+            before = at;
+            before_stress = last_stress;
+            at = next;
+            last_stress = stress;
+            MembranePoint point;
+            point.c = Vec3(at.along * at.along, at.across * at.across, 0.0);
+            law(point);
+            effects.remember(point);
+            HeldPoint held;
+            held.traction = Vec3(stress, 0.0, 0.0);
+            effects.slip(held);
+            effects.remember_slip(held);
+            out[0][i] -= at.along - 1.0 + held.slipped.x() / gauge_mm;
+        }
         return out;
     }
 
-    NamedNumbers parameters(std::span<const double>, std::span<const EffectTrial>) const override {
-        return {{"modulus_kpa", 1.0 / solve_linear(basis_, measured_[0]->values, split_)[0]}};
+    NamedNumbers parameters(std::span<const double> base, std::span<const EffectTrial>) const override {
+        return {{"modulus_kpa", guess_kpa_ * std::exp(base[0])}, {"hooke_share", base[1]}};
+    }
+
+    bool takes_up(const EffectInfo& effect, std::string_view key) const override {
+        // One way of pulling sees of the fibres' directions how many of them lie along it, which the dispersion says.
+        return effect.name == "stiffening" && key == "angle_deg";
     }
 
 private:
-    Basis basis_;
+    const std::vector<double>* stress_;
+    double guess_kpa_ = 0.0;
 };
 
 }  // namespace

@@ -65,6 +65,7 @@ struct Child {
     FittedModel model;
     double held_out_cost = 0.0, p = 1.0;
     std::string refused;
+    bool on_bound = false;  ///< nothing else is against it
 };
 
 /// The search of one explanation.
@@ -85,10 +86,11 @@ public:
         out_.before = base.residual;
         out_.train_before = rms_of(base.residual, split_, 0);
         out_.held_out_before = rms_of(base.residual, split_, 1);
+        best_ = base;
         kept_ = {base};
         for (round_ = 0; round_ < options_.max_effects; ++round_)
             if (!next_round()) break;
-        FittedModel best = kept_[0];
+        FittedModel best = best_;
         drop_what_is_not_needed(best);
         finish(best);
         return std::move(out_);
@@ -114,7 +116,7 @@ private:
             if (effect.for_tests || std::find(kinds.begin(), kinds.end(), data_.kind) == kinds.end()) continue;
             if (std::find(declared_.begin(), declared_.end(), &effect) != declared_.end()) continue;
             Candidate candidate{spoken_name(effect), std::numeric_limits<double>::quiet_NaN(), 1.0,
-                                rig_->why_not(effect)};
+                                rig_->why_not(effect), {}};
             if (candidate.refused_because.empty() && !fitter_.learn(effect))
                 candidate.refused_because = "none of its parameters changes anything here";
             if (candidate.refused_because.empty()) tried_.push_back(&effect);
@@ -145,25 +147,30 @@ private:
             }
         if (children.empty()) return false;
         fit_all(children);
-        std::vector<Child*> accepted;
+        std::vector<Child*> accepted, promising;
+        const double known = mean_cost(best_.residual, split_, 1, fitter_.scale());
         for (Child& child : children) {
             judge(child, static_cast<double>(children.size()));
-            if (child.refused.empty()) accepted.push_back(&child);
+            // A number on its bound may come off it beside another effect.
+            if (child.refused.empty() || child.on_bound) promising.push_back(&child);
+            if (child.refused.empty() && child.held_out_cost < known) accepted.push_back(&child);
         }
-        std::stable_sort(accepted.begin(), accepted.end(),
-                         [](const Child* a, const Child* b) { return a->held_out_cost < b->held_out_cost; });
+        const auto better = [](const Child* a, const Child* b) { return a->held_out_cost < b->held_out_cost; };
+        std::stable_sort(accepted.begin(), accepted.end(), better);
+        std::stable_sort(promising.begin(), promising.end(), better);
         if (!accepted.empty() && !beats_plain_shapes(*accepted[0])) accepted.clear();
         note(children, accepted);
-        if (accepted.empty()) return false;
-        find_equals(accepted);
+        if (!accepted.empty()) find_equals(accepted);
+        if (promising.empty() || (accepted.empty() && !plain_better_.empty())) return false;
         // Those that are far behind the best will not overtake it.
         const double before = mean_cost(kept_[0].residual, split_, 1, fitter_.scale());
-        const double enough = before - 0.5 * (before - accepted[0]->held_out_cost);
+        const double enough = before - 0.5 * (before - promising[0]->held_out_cost);
+        if (!accepted.empty()) best_ = accepted[0]->model;
         std::vector<FittedModel> next;
-        for (std::size_t k = 0; k < std::min(kept_models, accepted.size()); ++k)
-            if (accepted[k]->held_out_cost <= enough) next.push_back(std::move(accepted[k]->model));
+        for (std::size_t k = 0; k < std::min(kept_models, promising.size()); ++k)
+            if (promising[k]->held_out_cost <= enough) next.push_back(std::move(promising[k]->model));
         kept_ = std::move(next);
-        const double left = rms_of(kept_[0].residual, split_, 1);
+        const double left = rms_of(best_.residual, split_, 1);
         return !(left <= floor_factor * data_.sensor_noise);  // explained
     }
 
@@ -199,6 +206,22 @@ private:
             child.refused = "the held-out error falls by less than 1 %";
         else
             child.refused = why_no_effect(*trial, fitter_.free_parameters(*child.effect));
+        if (child.p >= significant || gain < least_gain) return;
+        if (child.refused.empty())
+            for (const EffectTrial& other : child.model.effects) {
+                const std::string why = why_no_effect(other, fitter_.free_parameters(*other.effect));
+                if (!why.empty() && child.refused.empty())
+                    child.refused = "of '" + spoken_name(*other.effect) + "' beside it " + why;
+            }
+        child.on_bound = child.refused.find("on a bound") != std::string::npos;
+    }
+
+    /// A sine that hardly comes round once within a recording is no oscillation: any curve is like a part of it.
+    bool repeats(const Structure& shape) const {
+        constexpr double turns = 1.5;
+        double longest = 0.0;
+        for (const double t : data_.time_s) longest = std::max(longest, t);
+        return shape.what != "oscillation" || turns * shape.period_s <= longest;
     }
 
     /// What a sine or a step without a mechanism says better is not explained by an effect.
@@ -206,7 +229,7 @@ private:
         const Columns& before = kept_[child.parent].residual;
         const LossScale& scale = fitter_.scale();
         for (const auto& shape : {plain_oscillation(data_, split_, before), plain_step(data_, split_, before, scale)}) {
-            if (!shape || mean_cost(shape->residual, split_, 1, scale) >= child.held_out_cost) continue;
+            if (!shape || !repeats(shape->says) || mean_cost(shape->residual, split_, 1, scale) >= child.held_out_cost) continue;
             if (gain_by_chance(child.model.residual, shape->residual, split_, scale, options_.seed) >= not_apart)
                 continue;
             plain_better_ = shape->says.text;
@@ -223,6 +246,10 @@ private:
             row.held_out_rms = rms_of(child.model.residual, split_, 1);
             row.p_value = child.p;
             row.refused_because = child.refused;
+            row.parameters.clear();
+            for (const EffectTrial& trial : child.model.effects)
+                for (std::size_t k = 0; trial.effect == child.effect && k < trial.values.size(); ++k)
+                    row.parameters.emplace_back(std::string(child.effect->parameters[k].key), trial.values[k]);
             if (!child.refused.empty()) continue;
             if (accepted.empty())
                 row.refused_because = "a shape without a mechanism says more: " + plain_better_;
@@ -346,7 +373,8 @@ private:
     Fitter fitter_;
     Workers workers_;
     std::vector<const EffectInfo*> declared_, tried_;
-    std::vector<FittedModel> kept_;
+    FittedModel best_;                ///< that may be named
+    std::vector<FittedModel> kept_;   ///< from which the next round begins
     std::string plain_better_;
     int round_ = 0;
     Explanation out_;

@@ -30,6 +30,7 @@ struct Candidate {
     double held_out_rms = 0.0;    ///< NaN where it could not be tried
     double p_value = 1.0;         ///< corrected
     std::string refused_because;  ///< "" = taken
+    NamedNumbers parameters;      ///< as fitted when it was first tried
 };
 
 struct Explanation {

@@ -38,11 +38,11 @@ void set_constants(const ShellTriangle& t, double* to) {
 
 }  // namespace
 
-kernel::Elastic ElasticGroups::view(const Fibres& fibres, const double* scale) const {
+kernel::Elastic ElasticGroups::view(const Fibres& fibres, const double* scale, const double* law) const {
     return {first_slot.data(), place.data(), second.data(),
-            constant.data(),   scale,        fibres.stiffness_kpa,
-            fibres.exponent,   fibres.onset, std::sqrt(fibre_exponent_limit / fibres.exponent),
-            fibres.cosine(),   fibres.sine()};
+            constant.data(),   scale,        law,
+            fibres.stiffness_kpa, fibres.exponent, fibres.onset,
+            std::sqrt(fibre_exponent_limit / fibres.exponent), fibres.cosine(), fibres.sine()};
 }
 
 ElasticGroups pack_shell(const ShellModel& shell) {
@@ -70,6 +70,7 @@ ElasticGroups pack_shell(const ShellModel& shell) {
         for (std::size_t l = 0; l < n; ++l) {
             // An empty lane is a triangle without stiffness where the last one is.
             const bool empty = g * n + l >= order.size();
+            out.triangle.push_back(empty ? -1 : static_cast<Index>(order[g * n + l]));
             const ShellTriangle& t = shell.triangles[order[std::min(g * n + l, order.size() - 1)]];
             set_constants(t, out.constant.data() + g * kernel::elastic_constants * n + l);
             if (empty) {
@@ -95,6 +96,29 @@ ElasticGroups pack_shell(const ShellModel& shell) {
         out.source_first.push_back(static_cast<std::int32_t>(out.source.size()));
     }
     return out;
+}
+
+void ask_law(const ShellModel& shell, const ElasticGroups& groups, const Fibres& fibres, const AskLaw& law,
+             std::span<const Vec3> x, std::span<double> out, std::size_t begin, std::size_t end) {
+    for (std::size_t g = begin; g < end; ++g)
+        for (std::size_t l = 0; l < n; ++l) {
+            double* to = out.data() + g * 4 * n + l;
+            to[0] = 1.0;
+            to[n] = to[2 * n] = to[3 * n] = 0.0;
+            if (groups.triangle[g * n + l] < 0) continue;
+            const ShellTriangle& t = shell.triangles[at(groups.triangle[g * n + l])];
+            const Eigen::Matrix2d e = shell_strain(t, x);
+            MembranePoint elastic;
+            elastic.c = Vec3(1.0 + 2.0 * e(0, 0), 1.0 + 2.0 * e(1, 1), 2.0 * e(0, 1));
+            MembranePoint point = elastic;
+            point.index = g * n + l;
+            const MembraneMaterial material{t.mu_kpa, t.thinning, t.round};
+            ask_elastic_law(material, fibres, elastic);
+            law(material, point);
+            const Vec3 more = point.stress - point.at_once * elastic.stress;
+            to[0] = point.at_once;
+            for (std::size_t k = 0; k < 3; ++k) to[(k + 1) * n] = more[static_cast<Eigen::Index>(k)];
+        }
 }
 
 std::vector<double> holding_stiffness(const ShellModel& shell, std::span<const Vec3> rest) {

@@ -8,12 +8,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "softbody/aligned.h"
 #include "softbody/fibres.h"
 #include "softbody/kernel.h"
+#include "softbody/membrane.h"
 #include "softbody/shell.h"
 
 namespace cathlab {
@@ -30,11 +32,19 @@ struct ElasticGroups {
 
     std::size_t groups() const { return first_slot.empty() ? 0 : first_slot.size() - 1; }
     std::size_t slots() const { return place.size() / kernel::lanes; }
-    kernel::Elastic view(const Fibres& fibres, const double* scale) const;
+    std::vector<Index> triangle;  ///< (groups x 8) of the shell; -1 = an empty lane
+    kernel::Elastic view(const Fibres& fibres, const double* scale, const double* law = nullptr) const;
     kernel::ElasticSources sources() const { return {source_first.data(), source.data()}; }
 };
 
 ElasticGroups pack_shell(const ShellModel& shell);
+
+/// Asks `law` at every triangle as it stands at x (c, index = lane), and writes what makes the loops' stress that one at
+/// x, and at_once times as stiff from there: out, (groups x 4 x 8), lanes [begin, end) of groups.
+///     S(C) = at_once (S_elastic(C) - S_elastic(C at x)) + S_law
+using AskLaw = std::function<void(const MembraneMaterial& material, MembranePoint& point)>;
+void ask_law(const ShellModel& shell, const ElasticGroups& groups, const Fibres& fibres, const AskLaw& law,
+             std::span<const Vec3> x, std::span<double> out, std::size_t begin, std::size_t end);
 
 /// k_i at rest, mN/mm, as small as passes converge with: the largest eigenvalue of the wall's stiffness over k is 5/4.
 /// A substep's first forces are those at x + h v, so that a shape of eigenvalue m goes by z^2 + 2 (m - 1) z - (m - 1) =

@@ -142,6 +142,17 @@ TARGET static void shell_forces(const Elastic& given, const double* x, double* s
                 add_fibres(e, e.fibre_sine, round_x, round_y, c, volume, s, stiffer);
                 add_fibres(e, -e.fibre_sine, round_x, round_y, c, volume, s, stiffer);
             }
+            if (e.law) {
+                const double* const law = e.law + g * 4 * lanes + half;
+                Block times, more;
+                lanes_at(law, times);
+                stiffer *= times > 1.0 ? times : Block{} + 1.0;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    lanes_at(law + (k + 1) * lanes, more);
+                    Block& to = s[k == 0 ? 0 : 3 - k];  // 11, 22, 12 there, 11, 12, 22 here
+                    to = times * to + volume * more;
+                }
+            }
             Block factor = stiffer / at_rest;
             if (e.scale) {
                 Block unscaled;

@@ -78,6 +78,8 @@ struct Elastic {
     const double* second;
     const double* constant;
     const double* scale;  ///< (n) factor on all stiffnesses, or null
+    const double* law;    ///< (groups x 4 x 8) how many times the membrane's stress, and what is added to it (kPa; 11,
+                          ///< 22, 12), or null
     double fibre_stiffness, fibre_exponent, fibre_onset, fibre_limit, fibre_cosine, fibre_sine;
 };
 /// Forces of triangle groups [begin, end) at x: slot_force (slots x 3 x 8), mN, and tangent (groups x 8), how many

@@ -131,6 +131,8 @@ SoftBodyModel build_soft_body(const WallSample& sample, const WallParameters& pa
     model.normal = sample.normal;
     model.normal.resize(n, Vec3::Zero());
     model.region = sample.region;
+    model.area_mm2 = sample.area_mm2;
+    model.thickness_mm = sample.thickness_mm;
     model.links = sample.links;
     model.damping_per_s = parameters.damping_per_s;
     model.max_speed_mm_s = parameters.max_speed_mm_s;

@@ -98,6 +98,7 @@ struct FreeBody {
 struct SoftBodyModel {
     std::vector<Vec3> rest;                      ///< (n) mm
     std::vector<Vec3> normal;                    ///< (n) unit, out of the lumen, at rest
+    std::vector<double> area_mm2, thickness_mm;  ///< (n) of the wall that each stands for
     std::vector<double> mass;                    ///< (n) kg
     std::vector<double> stiffness;               ///< (n) k_i, mN/mm; elastic form: at rest
     std::vector<double> support;                 ///< (n) stiffness of what surrounds the wall, mN/mm; empty = none

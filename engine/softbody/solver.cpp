@@ -39,7 +39,8 @@ bool elastic(const SoftBodyModel& model) {
 /// Forces of groups [begin, end) of the shell's triangles at state.x.
 void pull(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, std::size_t begin,
           std::size_t end) {
-    const kernel::Elastic view = model.elastic.view(scratch.fibres, numbers(scratch.stiffness_scale));
+    const kernel::Elastic view = model.elastic.view(scratch.fibres, numbers(scratch.stiffness_scale),
+                                                      scratch.law.empty() ? nullptr : scratch.law.data());
     kernel::best().shell_forces(view, numbers(state.x), scratch.slot_force.data(), state.tangent.data(), begin, end);
 }
 
@@ -82,7 +83,7 @@ kernel::Particles particles(const SoftBodyModel& model, SoftBodyState& state, So
     p.mass = model.mass.data();
     p.stiffness = elastic(model) ? numbers(scratch.hold) : model.stiffness.data();
     p.stiffness_scale = elastic(model) ? nullptr : numbers(scratch.stiffness_scale);
-    p.support = numbers(model.support);
+    p.support = numbers(scratch.support.empty() ? model.support : scratch.support);
     p.drag = numbers(model.drag);
     p.rest = numbers(model.rest);
     p.fixed = model.fixed.data();
@@ -169,6 +170,11 @@ void turn_prediction(const SoftBodyModel& model, SoftBodyState& state, SoftBodyS
     }
 }
 
+/// Parts that nothing holds: none where an effect has put tissue around the wall.
+std::span<const FreeBody> free_bodies(const SoftBodyModel& model, const SoftBodyScratch& scratch) {
+    return scratch.support.empty() ? std::span<const FreeBody>(model.free_bodies) : std::span<const FreeBody>();
+}
+
 void predict_with(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
                   const SupportMotion* supports, std::span<const Vec3> external_force, const Workers& workers) {
     const std::size_t n = model.size();
@@ -177,7 +183,7 @@ void predict_with(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScra
     CATHLAB_CHECK(scratch.stiffness_scale.empty() || scratch.stiffness_scale.size() == n,
                   "one stiffness scale a particle");
     scratch.momentum.resize(2 * model.free_bodies.size());
-    for (std::size_t b = 0; b < model.free_bodies.size(); ++b) {
+    for (std::size_t b = 0; b < free_bodies(model, scratch).size(); ++b) {
         const FreeBody& body = model.free_bodies[b];
         momentum_of(model, state, body, state.x[at(body.particles.front())], scratch.momentum[2 * b],
                     scratch.momentum[2 * b + 1]);
@@ -209,13 +215,13 @@ void predict_with(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScra
             scratch.predicted[i] += pull;
             // Only a free body has to fall with its forces from the start: a held one would start its fit displaced,
             // and a few passes never take that back.
-            if (model.free_bodies.empty()) continue;
+            if (free_bodies(model, scratch).empty()) continue;
             const double length = pull.norm();
             state.x[i] += length > largest_guess_mm ? Vec3(pull * (largest_guess_mm / length)) : pull;
         }
     });
     if (elastic(model))
-        for (std::size_t b = 0; b < model.free_bodies.size(); ++b) turn_prediction(model, state, scratch, h, b);
+        for (std::size_t b = 0; b < free_bodies(model, scratch).size(); ++b) turn_prediction(model, state, scratch, h, b);
 }
 
 }  // namespace
@@ -238,6 +244,14 @@ SoftBodyState rest_state(const SoftBodyModel& model) {
         std::fill_n(state.rotation.begin() + static_cast<std::ptrdiff_t>(g * 4 * kernel::lanes), kernel::lanes, 1.0);
     state.tangent.assign(model.elastic.groups() * kernel::lanes, 1.0);
     return state;
+}
+
+void ask_law(const SoftBodyModel& model, const SoftBodyState& state, SoftBodyScratch& scratch, const AskLaw& law,
+             const Workers& workers) {
+    scratch.law.resize(model.elastic.groups() * 4 * kernel::lanes);
+    workers.for_ranges(model.elastic.groups(), shell_grain, [&](std::size_t begin, std::size_t end) {
+        ask_law(model.shell, model.elastic, scratch.fibres, law, state.x, scratch.law, begin, end);
+    });
 }
 
 void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h,
@@ -425,7 +439,7 @@ void finish(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& s
     workers.for_ranges(model.size(), particle_grain,
                        [&](std::size_t begin, std::size_t end) { kernel::best().finish(walked, begin, end); });
     if (walked.goal) state.goal.swap(scratch.goal);  // the next fit writes all of them anew
-    for (std::size_t b = 0; b < model.free_bodies.size(); ++b) {
+    for (std::size_t b = 0; b < free_bodies(model, scratch).size(); ++b) {
         const FreeBody& body = model.free_bodies[b];
         const Vec3 origin = scratch.start[at(body.particles.front())];
         Vec3 linear = scratch.momentum[2 * b], angular = scratch.momentum[2 * b + 1];

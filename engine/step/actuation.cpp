@@ -74,6 +74,12 @@ void actuate(Parts& p, const EffectContext& context, Input& input, SegmentBends&
     p.each_effect(hook_actuation, [&](Effect& effect) { effect.actuation(context, act); });
     p.catheter_route->tip_compliance_mm_per_n = act.tip_compliance_mm_per_n;
 
+    const bool tapered =
+        std::any_of(act.segments.begin(), act.segments.end(), [](const ActuatedSegment& s) { return s.taper != 0.0; });
+    if (tapered) {
+        p.catheter_state->taper.clear();
+        for (const ActuatedSegment& s : act.segments) p.catheter_state->taper.push_back(s.taper);
+    }
     for (std::size_t i = 0; i < act.segments.size(); ++i)
         put(act.segments[i], bends.bend_deg[i], bends.direction_deg[i]);
     // While the hand is on the other device the catheter's shaft is held at the sheath.

@@ -6,6 +6,7 @@
 #include "step/actuation.h"
 #include "step/measure.h"
 #include "step/parts.h"
+#include "step/wall_slip.h"
 #include "step/substep.h"
 
 namespace cathlab {
@@ -48,8 +49,9 @@ void step(World& world, const Input& wanted, Channels& channels) {
     Drive drive;
     drive.support_displacement.assign(parts.wall->size(), Vec3::Zero());
     parts.each_effect(hook_drive, [&](Effect& effect) { effect.drive(context, drive); });
+    let_slip(parts, context, drive.support_displacement);
     const std::vector<Vec3> before = parts.supports->displacement;
-    if (parts.wall->support.empty())
+    if (parts.wall->support.empty() && parts.wall_scratch->support.empty())
         for (std::size_t i = 0; i < parts.wall->size(); ++i)
             if (!parts.wall->fixed[i]) drive.support_displacement[i].setZero();
     parts.supports->displacement = drive.support_displacement;

@@ -9,6 +9,35 @@ namespace {
 // within a twentieth, soft enough that it does not tear at its neighbours.
 constexpr double bond_stiffness = 20.0;
 
+/// The model's foundation and that of effects, mN/mm; nothing where no effect has one.
+void set_support(const Parts& p, std::span<const double> kpa_per_mm) {
+    std::vector<double>& support = p.wall_scratch->support;
+    support.clear();
+    if (std::all_of(kpa_per_mm.begin(), kpa_per_mm.end(), [](double k) { return k == 0.0; })) return;
+    for (std::size_t i = 0; i < kpa_per_mm.size(); ++i)
+        support.push_back(kpa_per_mm[i] * p.wall->area_mm2[i] + (p.wall->support.empty() ? 0.0 : p.wall->support[i]));
+}
+
+/// The membrane as it stands when the substep begins: what effects make of its law, and what they keep of it.
+void ask_membrane_law(const Parts& p, const EffectContext& context) {
+    std::vector<ActiveEffect*> active;
+    for (ActiveEffect* effect : p.effects)
+        if (effect->info->hooks & hook_membrane) active.push_back(effect);
+    std::stable_sort(active.begin(), active.end(),
+                     [](const ActiveEffect* a, const ActiveEffect* b) { return a->info < b->info; });
+    std::vector<Effect*> effects;
+    for (ActiveEffect* effect : active) {
+        effect->effect->points(p.wall->elastic.groups() * kernel::lanes);
+        effects.push_back(effect->effect.get());
+    }
+    SoftBodyScratch& scratch = *p.wall_scratch;
+    const auto law = [&](const MembraneMaterial& material, MembranePoint& point) {
+        ask_membrane(effects, context, material, scratch.fibres, point);
+        for (Effect* effect : effects) effect->remember(context, point);
+    };
+    ask_law(*p.wall, *p.wall_state, scratch, law, p.world->workers());
+}
+
 }  // namespace
 
 WallForces::WallForces(const Parts& p, const EffectContext& context) {
@@ -20,11 +49,15 @@ WallForces::WallForces(const Parts& p, const EffectContext& context) {
         scale.assign(n, 1.0);
         Fibres& fibres = p.wall_scratch->fibres;
         fibres = {};
+        std::vector<double> around(n, 0.0);
         p.each_effect(hook_material, [&](Effect& effect) {
             effect.material(context, scale);
             effect.fibres(context, fibres);
+            effect.surroundings(context, around);
         });
+        set_support(p, around);
     }
+    if ((hooks & hook_membrane) && p.wall->form == WallForm::elastic) ask_membrane_law(p, context);
     if (hooks & hook_constraint)
         p.each_effect(hook_constraint, [&](Effect& effect) { effect.constraint(context, anchors_); });
     if (hooks & hook_force) {
