@@ -15,6 +15,11 @@ struct Piece {
 
 constexpr int parts_of_a_taper = 6;  // of a segment whose curvature changes along it
 
+/// The part of the bend that part k takes.
+double taper_share(double taper, int k) {
+    return (1.0 + taper * ((2.0 * k + 1.0) / parts_of_a_taper - 1.0)) / parts_of_a_taper;
+}
+
 std::vector<Piece> pieces_of(const CatheterSpec& spec, const CatheterState& state) {
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i < spec.segments.size(); ++i) {
@@ -25,9 +30,8 @@ std::vector<Piece> pieces_of(const CatheterSpec& spec, const CatheterState& stat
             continue;
         }
         for (int k = 0; k < parts_of_a_taper; ++k) {
-            const double share = (1.0 + taper * ((2.0 * k + 1.0) / parts_of_a_taper - 1.0)) / parts_of_a_taper;
-            pieces.push_back(
-                {spec.segments[i].length_mm / parts_of_a_taper, share * state.bend_rad[i], state.direction_rad[i]});
+            pieces.push_back({spec.segments[i].length_mm / parts_of_a_taper, taper_share(taper, k) * state.bend_rad[i],
+                              state.direction_rad[i]});
         }
     }
     if (spec.tip_length_mm > 0.0) pieces.push_back({spec.tip_length_mm, 0.0, 0.0});
@@ -75,6 +79,16 @@ Pose along_arc(const Pose& start, double length, double bend, double direction) 
     // Rz(phi) Ry(beta) Rz(-phi) is the turn by beta about (-sin phi, cos phi, 0).
     end.orientation = (start.orientation * det::rotation_from_vector(Vec3(-bend * s, bend * c, 0.0))).normalized();
     return end;
+}
+
+Pose segment_end(const Pose& start, double length, const Vec2& bend, double taper) {
+    const double angle = std::sqrt(bend.squaredNorm());
+    const double direction = angle > 0.0 ? det::atan2(bend.y(), bend.x()) : 0.0;
+    if (taper == 0.0) return along_arc(start, length, angle, direction);
+    Pose at = start;
+    for (int k = 0; k < parts_of_a_taper; ++k)
+        at = along_arc(at, length / parts_of_a_taper, taper_share(taper, k) * angle, direction);
+    return at;
 }
 
 double base_arc_mm(const CatheterSpec& spec, const CatheterState& state) {

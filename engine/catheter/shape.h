@@ -25,6 +25,9 @@ struct CatheterShape {
 /// Exact for bend = 0 (straight on).
 Pose along_arc(const Pose& start, double length, double bend, double direction);
 
+/// The frame at the end of a segment of that length, bend (radians, towards the frame's x and y) and taper.
+Pose segment_end(const Pose& start, double length, const Vec2& bend, double taper);
+
 /// The catheter of a state on a rail.  The curvature of its steerable part is that of its own bends, and where a
 /// guidewire leads it (Rail::lead) the mean of its own and the rail's, as of two elastic rods in one another.  What is
 /// still inside the sheath is straight: the segments come out tip first, each with its curvature (bend / length), so

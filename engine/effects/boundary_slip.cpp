@@ -43,7 +43,8 @@ EffectInfo boundary_slip_effect() {
         .hooks = hook_slip,
         .for_tests = false,
         .applies_to = {"wall-tension", "wall-contact"},
-        .parameters = {{"mm_per_kpa", "mm/kPa", 0.002, 0.0, 1.0, "slip for each kPa of the section beyond the threshold"},
+        .parameters = {{"mm_per_kpa", "mm/kPa", 0.002, 0.0, 1.0,
+                        "slip for each kPa of the section beyond the threshold"},
                        {"threshold_kpa", "kPa", 5.0, 0.0, 1000.0, "traction up to which it sticks"}},
         .strengths = {"mm_per_kpa"},
         .make = [](std::span<const double> p) -> std::unique_ptr<Effect> {

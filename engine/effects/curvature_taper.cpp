@@ -1,5 +1,5 @@
-// A segment does not bend evenly: friction spends the cables' pull on its way, or the wall is stiffer at one end, so that
-// the curvature goes in a straight line from one end of it to the other [camarillo2009],
+// A segment does not bend evenly: friction spends the cables' pull on its way, or the wall is stiffer at one end, so
+// that the curvature goes in a straight line from one end of it to the other [camarillo2009],
 //     kappa(s) = bend / length (1 + taper (2 s / length - 1)).
 #include "effects/play.h"
 

@@ -52,8 +52,8 @@ struct EffectContext {
 struct ActuatedSegment {
     double length_mm = 0.0;
     Vec2 bend_rad = Vec2::Zero();  ///< angle between its ends, towards x and y of the device's base frame
-    /// How unevenly the bend lies along the segment: curvature (bend / length) (1 + taper (2 s / length - 1)); -1 = all at
-    /// its base and none at its end.
+    /// How unevenly the bend lies along the segment: curvature (bend / length) (1 + taper (2 s / length - 1)); -1 = all
+    /// at its base and none at its end.
     double taper = 0.0;
     double tendon_radius_mm = 0.0;
     std::vector<double> tendon_rad, tendon_mm;  ///< (tendons) place around the axis; length pulled at the drive

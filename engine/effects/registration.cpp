@@ -31,7 +31,7 @@ EffectInfo registration_effect() {
         .source = "fitzpatrick2001",
         .hooks = hook_measure,
         .for_tests = false,
-        .applies_to = {"catheter-tip", "tendon-tip"},
+        .applies_to = {"catheter-tip", "tendon-tip", "wall-contact"},
         .parameters = {{"turn_x_deg", "deg", 0.0, -15.0, 15.0, "rotation vector, x"},
                        {"turn_y_deg", "deg", 0.0, -15.0, 15.0, "rotation vector, y"},
                        {"turn_z_deg", "deg", 0.0, -15.0, 15.0, "rotation vector, z"},

@@ -27,7 +27,7 @@ EffectInfo sensor_drift_effect() {
         .source = "wiles2004",
         .hooks = hook_measure,
         .for_tests = false,
-        .applies_to = {"catheter-tip", "tendon-tip", "heart-motion"},
+        .applies_to = {"catheter-tip", "tendon-tip", "heart-motion", "wall-contact"},
         .parameters = {{"x_mm_min", "mm/min", 0.0, -60.0, 60.0, "drift a minute, x"},
                        {"y_mm_min", "mm/min", 0.0, -60.0, 60.0, "drift a minute, y"},
                        {"z_mm_min", "mm/min", 1.0, -60.0, 60.0, "drift a minute, z, and along the heart's axis"}},

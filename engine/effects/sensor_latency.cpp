@@ -58,7 +58,7 @@ EffectInfo sensor_latency_effect() {
         .source = "wiles2004",
         .hooks = hook_measure,
         .for_tests = false,
-        .applies_to = {"catheter-tip", "tendon-tip"},
+        .applies_to = {"catheter-tip", "tendon-tip", "wall-contact"},
         .parameters = {{"delay_s", "s", 0.2, 0.0, 3.0, "age of a reading"}},
         .strengths = {"delay_s"},
         .make = [](std::span<const double> p) -> std::unique_ptr<Effect> {

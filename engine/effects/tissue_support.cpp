@@ -1,5 +1,5 @@
-// Tissue around the vessel holds its wall like an elastic foundation: a traction of so much for each mm that the wall is
-// moved from where the supports stand [moireau2012].
+// Tissue around the vessel holds its wall like an elastic foundation: a traction of so much for each mm that the wall
+// is moved from where the supports stand [moireau2012].
 #include "effects/effect.h"
 
 namespace cathlab {

@@ -1,6 +1,6 @@
-// The shaft winds up: friction along it holds it back, and the longer it lies in the sheath and vessel the more it twists
-// before its tip turns.  The tip's rotation follows the drive's through a play whose radius grows with the length that is
-// inserted, and lags no more than a torque twists a shaft [gere2008]:
+// The shaft winds up: friction along it holds it back, and the longer it lies in the sheath and vessel the more it
+// twists before its tip turns.  The tip's rotation follows the drive's through a play whose radius grows with the
+// length that is inserted, and lags no more than a torque twists a shaft [gere2008]:
 //     tip <- play(drive, tip, base + per_100mm insertion / 100).
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 // The wall resists what is quick more than what is slow: a Maxwell element beside the elastic law (a standard linear
 // solid [fung1993]),
 //     S = S_e + Q,   dQ/dt + Q / theta = g dS_e/dt,   g = share / (1 - share),   theta = (1 - share) tau,
-// so that under a load that comes at once and stays, `share` of the strain comes later, by 1 - exp(-t / tau).  share = 1
-// is Voigt's solid, a dashpot beside the elastic law.
-// solved exactly for an S_e that goes straight from call to call.  At first Q = 0: the wall has stood there for long.
+// so that under a load that comes at once and stays, `share` of the strain comes later, by 1 - exp(-t / tau).  share =
+// 1 is Voigt's solid, a dashpot beside the elastic law. solved exactly for an S_e that goes straight from call to call.
+// At first Q = 0: the wall has stood there for long.
 #include <algorithm>
 
 #include "core/deterministic_math.h"
@@ -17,7 +17,8 @@ constexpr double most = 0.9995;  // share: one beyond cannot be told from Voigt'
 class Viscoelasticity final : public Effect {
 public:
     Viscoelasticity(double share, double tau_s)
-        : share_(std::min(share, most) / (1.0 - std::min(share, most))), tau_s_(tau_s * (1.0 - std::min(share, most))) {}
+        : share_(std::min(share, most) / (1.0 - std::min(share, most))),
+          tau_s_(tau_s * (1.0 - std::min(share, most))) {}
 
     void points(std::size_t count) override { memory_.resize(count); }
     void stress(const EffectContext& context, MembranePoint& point) override {
@@ -61,7 +62,7 @@ private:
         at_once = share_ * (1.0 - kept) / x;
     }
 
-    double share_, tau_s_;  // g and theta
+    double share_, tau_s_;        // g and theta
     std::vector<Memory> memory_;  // (points)
 };
 

@@ -13,8 +13,75 @@ double beat_phase(const std::vector<double>& beats, double time_s) {
     return (time_s - begin) / (*next - begin);
 }
 
+namespace {
+
+/// The shortest distance that nearly as many pairs of triggers have as any other.
+double rhythm_of(const std::vector<double>& triggers) {
+    constexpr double shortest = 0.25, longest = 2.5, width = 0.06, nearly = 0.85;
+    std::vector<std::pair<double, double>> score;  // distance, how many pairs have it
+    double most = 0.0;
+    for (std::size_t i = 0; i < triggers.size(); ++i)
+        for (std::size_t j = i + 1; j < triggers.size() && triggers[j] - triggers[i] <= longest; ++j) {
+            const double d = triggers[j] - triggers[i];
+            if (d < shortest) continue;
+            double sum = 0.0;
+            for (std::size_t a = 0; a < triggers.size(); ++a)
+                for (std::size_t b = a + 1; b < triggers.size() && triggers[b] - triggers[a] <= longest; ++b) {
+                    const double off = (triggers[b] - triggers[a] - d) / (width * d);
+                    sum += std::exp(-off * off);
+                }
+            score.emplace_back(d, sum);
+            most = std::max(most, sum);
+        }
+    std::sort(score.begin(), score.end());
+    for (const auto& [d, sum] : score)
+        if (sum >= nearly * most) return d;
+    return 0.0;
+}
+
+}  // namespace
+
+std::vector<double> beats_among(const std::vector<double>& triggers) {
+    // Costs, in squares of a tenth of the rhythm: a trigger left out; an interval without any rhythm; a beat that none
+    // was recorded of, which is dearer than two intervals without rhythm.
+    constexpr double left_out = 3.0, no_rhythm = 25.0, missed = 60.0, part = 0.1;
+    constexpr std::size_t farthest = 6;
+    const double rhythm = rhythm_of(triggers);
+    if (!(rhythm > 0.0)) return triggers;
+    const std::size_t n = triggers.size();
+    std::vector<double> cost(n, 0.0);
+    std::vector<std::size_t> from(n, n);
+    for (std::size_t j = 0; j < n; ++j) {
+        cost[j] = left_out * static_cast<double>(j);
+        for (std::size_t i = j > farthest ? j - farthest : 0; i < j; ++i) {
+            const double d = (triggers[j] - triggers[i]) / rhythm, beats = std::max(1.0, std::round(d));
+            const double off = (d - beats) / part;
+            const double here = cost[i] + left_out * static_cast<double>(j - i - 1) + missed * (beats - 1.0) +
+                                std::min(off * off, no_rhythm);
+            if (here < cost[j]) {
+                cost[j] = here;
+                from[j] = i;
+            }
+        }
+    }
+    std::size_t last = n - 1;
+    for (std::size_t j = 0; j < n; ++j)
+        if (cost[j] + left_out * static_cast<double>(n - 1 - j) <
+            cost[last] + left_out * static_cast<double>(n - 1 - last))
+            last = j;
+    std::vector<double> out;
+    for (std::size_t j = last; j < n; j = from[j]) out.push_back(triggers[j]);
+    std::reverse(out.begin(), out.end());
+    return out.size() >= 2 ? out : triggers;
+}
+
 BeatClock::BeatClock(const Dataset& data) {
-    const auto& all = data.heart.beat_times_s;
+    const auto& triggers = data.heart.beat_times_s;
+    std::vector<std::vector<double>> all;
+    for (const std::vector<double>& run : triggers) {
+        all.push_back(run.size() >= 2 ? beats_among(run) : run);
+        dropped_ += run.size() - all.back().size();
+    }
     recorded_ = !all.empty() && std::all_of(all.begin(), all.end(), [](const auto& b) { return b.size() >= 2; });
     if (!recorded_) return;
     std::vector<double> usual;

@@ -93,9 +93,7 @@ std::string why_no_effect(const EffectTrial& trial, const std::vector<bool>& fre
         // 0 and 1 are ends by meaning (none, all of it), not by the range that somebody chose.
         const auto& ends = trial.effect->meant_ends;
         const bool meant = std::find(ends.begin(), ends.end(), p.key) != ends.end();
-        const auto natural = [&](double bound) {
-            return meant || bound == 0.0 || (bound == 1.0 && p.unit == "1");
-        };
+        const auto natural = [&](double bound) { return meant || bound == 0.0 || (bound == 1.0 && p.unit == "1"); };
         const Scale scale(p);
         const double place = scale.to(value), from = scale.to(p.minimum), to = scale.to(p.maximum);
         const bool low = place - from < near * (to - from) && !natural(p.minimum);
@@ -237,6 +235,10 @@ bool Fitter::learn(const EffectInfo& effect) {
     };
     std::vector<bool> may(count), out(count, false);
     for (std::size_t k = 0; k < count; ++k) may[k] = !rig_.takes_up(effect, effect.parameters[k].key);
+    if (rig_.slow()) {
+        free_[&effect] = may;
+        return std::find(may.begin(), may.end(), true) != may.end();
+    }
     for (int shape = 0;; ++shape) {
         std::vector<double> usual = acting(effect);
         if (shape > 0 && (!reshape(effect, may, shape, usual) || out == may)) break;
@@ -287,7 +289,7 @@ std::vector<std::vector<double>> Fitter::starts(const FittedModel& from, const E
         }
     }
     // What only shapes it may matter as much as its strength.
-    if (period == effect.parameters.size()) {
+    if (period == effect.parameters.size() && !rig_.slow()) {
         const std::size_t plain = levels.size();
         for (int other = 1;; ++other) {
             std::vector<double> any;
@@ -384,7 +386,7 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
     // Base numbers that are few go along from the beginning; where they are many, the effect looks where to go first.
     constexpr std::size_t few = 2;
     const bool base_too = rig_.bounds().size() <= few;
-    const std::size_t searched = base_too ? 4 : 2;  // of each way that the effect may point
+    const std::size_t searched = rig_.slow() ? 1 : base_too && !rig_.bounds().empty() ? 4 : 2;  // of each way
     std::vector<FittedModel> tried[2];
     const std::vector<double> usual = defaults(effect);
     for (const std::vector<double>& values : starts(from, effect)) {
@@ -404,10 +406,10 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
     best.train_cost = std::numeric_limits<double>::infinity();
     for (std::vector<FittedModel>& way : tried)
         for (FittedModel& model : way) {
-            refit(model, 10, base_too);
+            refit(model, rig_.slow() ? 6 : 10, base_too);
             if (model.train_cost < best.train_cost) best = std::move(model);
         }
-    refit(best, rig_.bounds().empty() ? 30 : 15);
+    if (!rig_.slow()) refit(best, rig_.bounds().empty() ? 30 : 15);
     return best;
 }
 
@@ -415,7 +417,7 @@ FittedModel Fitter::without(const FittedModel& from, std::size_t k) const {
     FittedModel model = from;
     model.effects.erase(model.effects.begin() + static_cast<std::ptrdiff_t>(k));
     model.residual = rig_.residual(model.base, model.effects);
-    refit(model, 25);
+    refit(model, rig_.slow() ? 4 : 25);
     return model;
 }
 

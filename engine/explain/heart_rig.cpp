@@ -64,6 +64,12 @@ public:
         return out;
     }
 
+    std::vector<std::string> notes() const override {
+        if (clock_.dropped() == 0) return {};
+        return {std::to_string(clock_.dropped()) +
+                " of the recorded triggers fall within a beat of the others' rhythm and were taken for false"};
+    }
+
 private:
     /// One factorisation where all columns know the same rows, else one a column.
     std::vector<LinearPart> factored(const Basis& basis) const {

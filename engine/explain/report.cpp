@@ -53,9 +53,10 @@ PageTable candidate_table(const Explanation& found) {
     PageTable out{"All candidates", {"effect", "held-out error", "p", "fitted", "refused because"}, {}};
     for (const Candidate& c : found.candidates) {
         std::string fitted;
-        for (const auto& [key, value] : c.parameters) fitted += (fitted.empty() ? "" : ", ") + key + " " + number(value, 3);
-        out.rows.push_back({c.name, number(c.held_out_rms), std::isnan(c.held_out_rms) ? "" : number(c.p_value, 2), fitted,
-                            c.refused_because.empty() ? "taken" : c.refused_because});
+        for (const auto& [key, value] : c.parameters)
+            fitted += (fitted.empty() ? "" : ", ") + key + " " + number(value, 3);
+        out.rows.push_back({c.name, number(c.held_out_rms), std::isnan(c.held_out_rms) ? "" : number(c.p_value, 2),
+                            fitted, c.refused_because.empty() ? "taken" : c.refused_because});
     }
     return out;
 }

@@ -99,6 +99,13 @@ Fibres RigEffects::fibres() {
     return out;
 }
 
+double RigEffects::surroundings() {
+    double out = 0.0;
+    for (std::size_t k = 0; k < made_.size(); ++k)
+        if ((trials_[k].effect->hooks & hook_material) != 0) made_[k]->surroundings(context_, std::span(&out, 1));
+    return out;
+}
+
 void RigEffects::membrane(const MembraneMaterial& material, const Fibres& fibres, MembranePoint& point) {
     ask_membrane(of_membrane_, context_, material, fibres, point);
 }
@@ -152,19 +159,18 @@ std::unique_ptr<Rig> make_rig(const Dataset& data, const Split& split) {
     if (data.kind == "tendon-tip") return make_tendon_rig(data, split);
     if (data.kind == "heart-motion") return make_heart_rig(data, split);
     if (data.kind == "wall-tension") return make_tension_rig(data, split);
-    throw UserError(data.folder + ": data of kind '" + data.kind +
-                    "' can be read, but this program cannot yet be its rig; it explains catheter-tip, tendon-tip, "
-                    "heart-motion and wall-tension");
+    if (data.kind == "wall-contact") return make_contact_rig(data, split);
+    throw UserError(data.folder + ": data of kind '" + data.kind + "' have no rig");
 }
 
 double rms_of(const Columns& residual, const Split& split, std::uint8_t part) {
+    const std::size_t count = split.judged > 0 ? std::min(split.judged, residual.size()) : residual.size();
     double sum = 0.0;
-    for (const auto& column : residual) {
-        const double r = rms(column, split.held_out, part);
+    for (std::size_t c = 0; c < count; ++c) {
+        const double r = rms(residual[c], split.held_out, part);
         if (!std::isnan(r)) sum += r * r;
     }
-    return residual.empty() ? std::numeric_limits<double>::quiet_NaN()
-                            : std::sqrt(sum / static_cast<double>(residual.size()));
+    return count == 0 ? std::numeric_limits<double>::quiet_NaN() : std::sqrt(sum / static_cast<double>(count));
 }
 
 }  // namespace cathlab

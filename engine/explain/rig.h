@@ -59,6 +59,12 @@ public:
     /// Why an effect cannot be tried on these data, in a sentence; "" where it can.
     virtual std::string why_not(const EffectInfo& effect) const;
 
+    /// Whether one model takes seconds: searches are then short.
+    virtual bool slow() const { return false; }
+
+    /// What the reader should know of how the data were taken, a sentence each.
+    virtual std::vector<std::string> notes() const { return {}; }
+
     /// Whether the base model's own numbers do what this parameter does: it is then not searched.
     virtual bool takes_up(const EffectInfo& /*effect*/, std::string_view /*key*/) const { return false; }
 

@@ -9,6 +9,7 @@ std::unique_ptr<Rig> make_catheter_rig(const Dataset& data, const Split& split);
 std::unique_ptr<Rig> make_tendon_rig(const Dataset& data, const Split& split);
 std::unique_ptr<Rig> make_heart_rig(const Dataset& data, const Split& split);
 std::unique_ptr<Rig> make_tension_rig(const Dataset& data, const Split& split);
+std::unique_ptr<Rig> make_contact_rig(const Dataset& data, const Split& split);
 
 /// The effects of one recording, from its first row on, asked as a step asks them.
 class RigEffects {
@@ -33,6 +34,7 @@ public:
     /// law makes of a point, and what is kept of it when the row is over.
     void points(std::size_t count);
     Fibres fibres();
+    double surroundings();  ///< kPa/mm
     void membrane(const MembraneMaterial& material, const Fibres& fibres, MembranePoint& point);
     void remember(const MembranePoint& point);
     void slip(HeldPoint& held);

@@ -28,6 +28,8 @@ Split split_rows(const Dataset& data) {
         out.held_out.push_back((in_run + static_cast<Index>(r)) % 3 == 1 ? 1 : 0);
     }
     if (!data.held_out.empty()) out.held_out = data.held_out;
+    const auto measured = data.of_role(ColumnRole::measured);
+    while (out.judged < measured.size() && measured[out.judged]->unit == measured[0]->unit) ++out.judged;
     return out;
 }
 

@@ -12,8 +12,6 @@
 namespace cathlab {
 namespace {
 
-constexpr double behind_mm = 1.0;
-constexpr double one_sample_mm = 1e9;
 constexpr std::size_t numbers_a_segment = 4;  // angle, gain, rest bend x and y
 
 class TendonRig final : public Rig {
@@ -30,12 +28,6 @@ public:
                 for (const double v : data.columns[c].values) most = std::max(most, std::fabs(v));
         }
         if (!(most > 0.0)) throw UserError(data.folder + ": no tendon was ever pulled; there is nothing to fit");
-        spec_.link_length_mm = 0.0;
-        spec_.tip_length_mm = 0.0;
-        rail_.points = {Vec3(0.0, 0.0, -behind_mm), Vec3::Zero()};
-        rail_.arc = {0.0, behind_mm};
-        rail_.tangent = {Vec3::UnitZ(), Vec3::UnitZ()};
-        rail_.side = {Vec3::UnitX(), Vec3::UnitX()};
         for (const DataColumn* column : measured_) axis_.push_back(column->quantity.back() - 'x');
         find_start();
     }
@@ -59,9 +51,7 @@ public:
         RigEffects effects(trials);
         const bool actuated = effects.uses(hook_actuation), driven = effects.uses(hook_drive);
         const bool read = effects.uses(hook_measure);
-        CatheterState state = initial_state(spec_, behind_mm + spec_.steerable_length_mm());
         const std::size_t n = spec_.segments.size();
-        state.taper.assign(n, 0.0);
         const Vec3 marker(base[n * numbers_a_segment], base[n * numbers_a_segment + 1],
                           base[n * numbers_a_segment + 2]);
         Actuation act;
@@ -71,13 +61,10 @@ public:
             effects.next_row(data_.time_s[i]);
             pull(act, base, i, actuated);
             if (actuated) effects.actuation(act);
-            for (std::size_t k = 0; k < n; ++k) {
-                const Vec2& b = act.segments[k].bend_rad;
-                state.bend_rad[k] = std::sqrt(b.squaredNorm());
-                state.direction_rad[k] = std::atan2(b.y(), b.x());
-                state.taper[k] = act.segments[k].taper;
-            }
-            Vec3 tip = shape(spec_, state, rail_, one_sample_mm).tip.to_world(marker);
+            Pose end;
+            for (std::size_t k = 0; k < n; ++k)
+                end = segment_end(end, act.segments[k].length_mm, act.segments[k].bend_rad, act.segments[k].taper);
+            Vec3 tip = end.to_world(marker);
             if (driven) tip += effects.drive().support_displacement[0];
             if (read) tip = effects.read_tip(tip);
             for (std::size_t c = 0; c < out.size(); ++c) out[c][i] -= tip[axis_[c]];
@@ -199,7 +186,6 @@ private:
     }
 
     CatheterSpec spec_;
-    Rail rail_;
     std::vector<std::string> names_;
     std::vector<int> axis_;
     std::vector<double> start_;

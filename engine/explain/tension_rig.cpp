@@ -1,6 +1,6 @@
-// Kind wall-tension: a strip, block or ring of the engine's elastic wall, pulled or pressed one way, in closed form.  Its
-// modulus is fitted, and how far it goes from the engine's neo-Hookean law to Hooke's: both call one number a modulus, and
-// a recording does not say which it means.
+// Kind wall-tension: a strip, block or ring of the engine's elastic wall, pulled or pressed one way, in closed form.
+// Its modulus is fitted, and how far it goes from the engine's neo-Hookean law to Hooke's: both call one number a
+// modulus, and a recording does not say which it means.
 #include <algorithm>
 #include <cmath>
 
@@ -11,10 +11,10 @@
 namespace cathlab {
 namespace {
 
-constexpr double poisson = 0.49;            // of arteries and silicones; the format does not say it
-constexpr double gauge_mm = 10.0;           // of a specimen whose length the format does not say
-constexpr double range = 4.0;               // of ln(modulus), to either side of the first guess
-constexpr double no_rest = 10.0;            // strain of a wall that no stretch brings to rest
+constexpr double poisson = 0.49;   // of arteries and silicones; the format does not say it
+constexpr double gauge_mm = 10.0;  // of a specimen whose length the format does not say
+constexpr double range = 4.0;      // of ln(modulus), to either side of the first guess
+constexpr double no_rest = 10.0;   // strain of a wall that no stretch brings to rest
 constexpr int parts_of_a_jump = 16;
 
 class TensionRig final : public Rig {
@@ -34,9 +34,7 @@ public:
         guess_kpa_ = std::fabs(product) / square;
     }
 
-    std::vector<Bound> bounds() const override {
-        return {{-range, range, "ln(modulus / guess)"}, {0.0, 1.0, "hooke"}};
-    }
+    std::vector<Bound> bounds() const override { return {{-range, range, "ln(modulus / guess)"}, {0.0, 1.0, "hooke"}}; }
     std::vector<double> start() const override { return {0.0, 0.5}; }
 
     Columns residual(std::span<const double> base, std::span<const EffectTrial> trials) const override {

@@ -49,13 +49,13 @@ std::string overlay_text(const std::vector<FittedEffect>& effects) {
     return out.str();
 }
 
-double noise_of(const Dataset& data, const Columns& residual) {
+double noise_of(const Dataset& data, const Columns& residual, std::size_t count) {
     double sum = 0.0;
-    for (const auto& column : residual) {
-        const double noise = noise_by_differences(column, data.run);
+    for (std::size_t c = 0; c < count; ++c) {
+        const double noise = noise_by_differences(residual[c], data.run);
         sum += std::isnan(noise) ? 0.0 : noise * noise;
     }
-    return std::sqrt(sum / static_cast<double>(residual.size()));
+    return std::sqrt(sum / static_cast<double>(count));
 }
 
 /// A model that was tried: what it came from, and how it does.
@@ -80,6 +80,7 @@ public:
           workers_(std::max(1, options.threads)) {}
 
     Explanation run() {
+        out_.cannot = rig_->notes();
         choose_candidates();
         FittedModel base = fitter_.begin(declared_);
         out_.split = split_;
@@ -115,8 +116,8 @@ private:
             const auto& kinds = effect.applies_to;
             if (effect.for_tests || std::find(kinds.begin(), kinds.end(), data_.kind) == kinds.end()) continue;
             if (std::find(declared_.begin(), declared_.end(), &effect) != declared_.end()) continue;
-            Candidate candidate{spoken_name(effect), std::numeric_limits<double>::quiet_NaN(), 1.0,
-                                rig_->why_not(effect), {}};
+            Candidate candidate{
+                spoken_name(effect), std::numeric_limits<double>::quiet_NaN(), 1.0, rig_->why_not(effect), {}};
             if (candidate.refused_because.empty() && !fitter_.learn(effect))
                 candidate.refused_because = "none of its parameters changes anything here";
             if (candidate.refused_because.empty()) tried_.push_back(&effect);
@@ -167,7 +168,7 @@ private:
         const double enough = before - 0.5 * (before - promising[0]->held_out_cost);
         if (!accepted.empty()) best_ = accepted[0]->model;
         std::vector<FittedModel> next;
-        for (std::size_t k = 0; k < std::min(kept_models, promising.size()); ++k)
+        for (std::size_t k = 0; k < std::min(rig_->slow() ? std::size_t{1} : kept_models, promising.size()); ++k)
             if (promising[k]->held_out_cost <= enough) next.push_back(std::move(promising[k]->model));
         kept_ = std::move(next);
         const double left = rms_of(best_.residual, split_, 1);
@@ -229,7 +230,8 @@ private:
         const Columns& before = kept_[child.parent].residual;
         const LossScale& scale = fitter_.scale();
         for (const auto& shape : {plain_oscillation(data_, split_, before), plain_step(data_, split_, before, scale)}) {
-            if (!shape || !repeats(shape->says) || mean_cost(shape->residual, split_, 1, scale) >= child.held_out_cost) continue;
+            if (!shape || !repeats(shape->says) || mean_cost(shape->residual, split_, 1, scale) >= child.held_out_cost)
+                continue;
             if (gain_by_chance(child.model.residual, shape->residual, split_, scale, options_.seed) >= not_apart)
                 continue;
             plain_better_ = shape->says.text;
@@ -308,7 +310,7 @@ private:
     void drop_what_is_not_needed(FittedModel& best) {
         std::size_t k = 0;
         fitter_.weigh_by(best);
-        fitter_.refit(best, 25);
+        if (!rig_->slow() || best.effects.size() > 1) fitter_.refit(best, rig_->slow() ? 4 : 25);
         while (k < best.effects.size()) {
             const EffectInfo* effect = best.effects[k].effect;
             if (std::find(declared_.begin(), declared_.end(), effect) != declared_.end()) {
@@ -352,7 +354,7 @@ private:
         if (out_.effects.empty()) out_.ambiguous_with.clear();
         if (out_.ambiguous_with.empty()) out_.parting.clear();
         out_.base_parameters = rig_->parameters(best.base, best.effects);
-        out_.estimated_noise = noise_of(data_, best.residual);
+        out_.estimated_noise = noise_of(data_, best.residual, split_.judged);
         out_.noise_floor = data_.sensor_noise > 0.0 ? data_.sensor_noise : out_.estimated_noise;
         fitter_.weigh_by(best);
         const bool noise_only = out_.held_out_after <= floor_factor * out_.noise_floor;
@@ -373,8 +375,8 @@ private:
     Fitter fitter_;
     Workers workers_;
     std::vector<const EffectInfo*> declared_, tried_;
-    FittedModel best_;                ///< that may be named
-    std::vector<FittedModel> kept_;   ///< from which the next round begins
+    FittedModel best_;               ///< that may be named
+    std::vector<FittedModel> kept_;  ///< from which the next round begins
     std::string plain_better_;
     int round_ = 0;
     Explanation out_;

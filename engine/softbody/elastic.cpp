@@ -39,10 +39,18 @@ void set_constants(const ShellTriangle& t, double* to) {
 }  // namespace
 
 kernel::Elastic ElasticGroups::view(const Fibres& fibres, const double* scale, const double* law) const {
-    return {first_slot.data(), place.data(), second.data(),
-            constant.data(),   scale,        law,
-            fibres.stiffness_kpa, fibres.exponent, fibres.onset,
-            std::sqrt(fibre_exponent_limit / fibres.exponent), fibres.cosine(), fibres.sine()};
+    return {first_slot.data(),
+            place.data(),
+            second.data(),
+            constant.data(),
+            scale,
+            law,
+            fibres.stiffness_kpa,
+            fibres.exponent,
+            fibres.onset,
+            std::sqrt(fibre_exponent_limit / fibres.exponent),
+            fibres.cosine(),
+            fibres.sine()};
 }
 
 ElasticGroups pack_shell(const ShellModel& shell) {

@@ -39,8 +39,8 @@ struct ElasticGroups {
 
 ElasticGroups pack_shell(const ShellModel& shell);
 
-/// Asks `law` at every triangle as it stands at x (c, index = lane), and writes what makes the loops' stress that one at
-/// x, and at_once times as stiff from there: out, (groups x 4 x 8), lanes [begin, end) of groups.
+/// Asks `law` at every triangle as it stands at x (c, index = lane), and writes what makes the loops' stress that one
+/// at x, and at_once times as stiff from there: out, (groups x 4 x 8), lanes [begin, end) of groups.
 ///     S(C) = at_once (S_elastic(C) - S_elastic(C at x)) + S_law
 using AskLaw = std::function<void(const MembraneMaterial& material, MembranePoint& point)>;
 void ask_law(const ShellModel& shell, const ElasticGroups& groups, const Fibres& fibres, const AskLaw& law,

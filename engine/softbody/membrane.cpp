@@ -24,8 +24,7 @@ void ask_elastic_law(const MembraneMaterial& material, const Fibres& fibres, Mem
         const Vec3 t = plane * Vec3((1.0 - nu) * (u[0] - 1.0) + nu * trace, (1.0 - nu) * (u[1] - 1.0) + nu * trace,
                                     (1.0 - nu) * u[2]);
         const Vec3 s(u[1] * t[0] - u[2] * t[2], u[0] * t[1] - u[2] * t[2], u[1] * t[2] - u[2] * t[1]);
-        const double stored =
-            0.5 * ((u[0] - 1.0) * t[0] + (u[1] - 1.0) * t[1] + 2.0 * u[2] * t[2]);
+        const double stored = 0.5 * ((u[0] - 1.0) * t[0] + (u[1] - 1.0) * t[1] + 2.0 * u[2] * t[2]);
         point.stress += material.hooke * (s / r - point.stress);
         point.energy_kpa += material.hooke * (stored - point.energy_kpa);
     }

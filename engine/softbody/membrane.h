@@ -23,12 +23,12 @@ struct MembraneMaterial {
 };
 
 struct MembranePoint {
-    std::size_t index = 0;        ///< which: effects keep their memory by it
-    Vec3 c = Vec3(1, 1, 0);       ///< C; effects take from it what bears no stress
-    Vec3 stress = Vec3::Zero();   ///< S, second Piola-Kirchhoff, kPa
-    double mu_kpa = 0.0;          ///< of the elastic law
-    double energy_kpa = 0.0;      ///< W, stored by the elastic law
-    double at_once = 1.0;         ///< how many times as stiff as the elastic law the wall is when strained at once
+    std::size_t index = 0;       ///< which: effects keep their memory by it
+    Vec3 c = Vec3(1, 1, 0);      ///< C; effects take from it what bears no stress
+    Vec3 stress = Vec3::Zero();  ///< S, second Piola-Kirchhoff, kPa
+    double mu_kpa = 0.0;         ///< of the elastic law
+    double energy_kpa = 0.0;     ///< W, stored by the elastic law
+    double at_once = 1.0;        ///< how many times as stiff as the elastic law the wall is when strained at once
 };
 
 /// S = mu (1 - d^-a C^-1) and W = mu/2 [tr C - 2 + (d^-a - 1) / a], d = det C, and the fibres' share (fibres.h), at

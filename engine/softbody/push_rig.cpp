@@ -206,6 +206,8 @@ PushedWall::PushedWall(const PushRig& rig)
     const WallSample sample = sample_wall(middle, std::vector<Index>(middle.vertices.size(), 0), spacing,
                                           std::vector<double>{rig.thickness_mm}, rig.seed);
     rest_ = sample.position;
+    area_mm2_ = sample.area_mm2;
+    thickness_mm_ = rig.thickness_mm;
     // Particles are sparse: those of the last row stand for the ring itself.
     const double reach = 0.6 * rig.particle_spacing_mm;
     for (const Vec3& p : rest_)
@@ -218,9 +220,140 @@ PushedWall::PushedWall(const PushRig& rig)
         throw UserError("the wall is held nowhere: no three particles lie within the discs of [[setup.fixed]]");
     const ShellMaterial material{rig.young_kpa, rig.poisson, rig.thickness_mm};
     shell_ = build_shell(rest_, sample.triangles, {&material, 1});
+    const Eigen::SparseMatrix<double> k = shell_stiffness(shell_, rest_);
+    holding_.assign(rest_.size(), 0.0);
+    for (std::size_t i = 0; i < rest_.size(); ++i)
+        for (int axis = 0; fixed_[i] && axis < 3; ++axis)
+            holding_[i] = std::max(holding_[i], k.coeff(static_cast<Eigen::Index>(3 * i) + axis, static_cast<Eigen::Index>(3 * i) + axis));
 }
 
 PushResult PushedWall::push(const Push& push, const std::function<bool()>& go_on) const {
+    return this->push(push, PushedLaw{}, go_on);
+}
+
+/// One place of the ball: the wall at rest there, with what effects make of it.
+class PushedWall::Sample {
+public:
+    Sample(const PushedWall& wall, const PushedLaw& law) : wall_(wall), law_(law), soft_(wall.shell_) {
+        slipped_.assign(wall.rest_.size(), Vec3::Zero());
+        if (law.membrane) more_.assign(wall.shell_.triangles.size(), Vec3::Zero());
+    }
+
+    /// Moves x to rest; total: the ball's force.
+    bool solve(const Vec3& centre, std::vector<Vec3>& x, Vec3& total) {
+        const Ball ball(wall_.shell_, centre, wall_.ball_radius_mm_, 4.0 * wall_.spacing_mm_, wall_.bed_kpa_per_mm_);
+        const ShellLoad load = [&](std::span<const Vec3> at_x, std::span<Vec3> force,
+                                   std::vector<Eigen::Triplet<double>>& stiffness) {
+            return ball(at_x, force, stiffness, total) + surround(at_x, force, stiffness);
+        };
+        const bool again = law_.membrane || law_.slip;
+        for (int round = 0;; ++round) {
+            if (law_.membrane) ask(x);
+            const std::vector<Vec3> before = x;
+            if (!shell_equilibrium(soft_, wall_.fixed_, load, x,
+                                   {.force_tolerance_mn = force_tolerance_mn, .fibres = law_.fibres, .more_stress = more_}))
+                return false;
+            double moved = 0.0;
+            for (std::size_t i = 0; i < x.size(); ++i) moved = std::max(moved, (x[i] - before[i]).norm());
+            if (law_.slip) moved = std::max(moved, let_slip(x));
+            if (!again || round >= most_rounds || (round > 0 && moved < still_mm)) break;
+        }
+        if (law_.membrane && law_.remember) each_point(x, [&](MembranePoint& p, const MembraneMaterial& m) {
+                law_.membrane(m, p);
+                law_.remember(p);
+            });
+        if (law_.slip && law_.remember_slip)
+            for (std::size_t i = 0; i < x.size(); ++i)
+                if (wall_.fixed_[i]) law_.remember_slip(i, traction(i));
+        return true;
+    }
+
+private:
+    static constexpr int most_rounds = 12;
+    static constexpr double still_mm = 4e-3;
+
+    double surround(std::span<const Vec3> x, std::span<Vec3> force,
+                    std::vector<Eigen::Triplet<double>>& stiffness) const {
+        if (law_.support_kpa_per_mm <= 0.0) return 0.0;
+        double potential = 0.0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const double k = law_.support_kpa_per_mm * wall_.area_mm2_[i];
+            const Vec3 off = x[i] - wall_.rest_[i];
+            potential += 0.5 * k * off.squaredNorm();
+            force[i] -= k * off;
+            for (int axis = 0; axis < 3; ++axis)
+                stiffness.emplace_back(static_cast<int>(3 * i) + axis, static_cast<int>(3 * i) + axis, k);
+        }
+        return potential;
+    }
+
+    template <class F>
+    void each_point(const std::vector<Vec3>& x, F&& f) const {
+        for (std::size_t k = 0; k < wall_.shell_.triangles.size(); ++k) {
+            const ShellTriangle& t = wall_.shell_.triangles[k];
+            const Eigen::Matrix2d e = shell_strain(t, x);
+            MembranePoint point;
+            point.index = k;
+            point.c = Vec3(1.0 + 2.0 * e(0, 0), 1.0 + 2.0 * e(1, 1), 2.0 * e(0, 1));
+            f(point, MembraneMaterial{t.mu_kpa, t.thinning, t.round});
+        }
+    }
+
+    /// The stress that the shell's own law, so many times as stiff, lacks of what the effects say at x.
+    void ask(const std::vector<Vec3>& x) {
+        double most = 1.0;
+        std::vector<Vec3> elastic(more_.size());
+        each_point(x, [&](MembranePoint& p, const MembraneMaterial& m) {
+            MembranePoint own = p;
+            ask_elastic_law(m, law_.fibres, own);
+            elastic[p.index] = own.stress;
+            law_.membrane(m, p);
+            more_[p.index] = p.stress;
+            most = std::max(most, p.at_once);
+        });
+        // A law stiffer than the one that is solved for would be overshot from round to round.
+        if (most != times_) {
+            for (std::size_t k = 0; k < soft_.triangles.size(); ++k)
+                soft_.triangles[k].mu_kpa = most * wall_.shell_.triangles[k].mu_kpa;
+            times_ = most;
+        }
+        each_point(x, [&](MembranePoint& p, const MembraneMaterial& m) {
+            MembranePoint stiff = p;
+            ask_elastic_law({times_ * m.mu_kpa, m.thinning, m.round}, law_.fibres, stiff);
+            more_[p.index] -= stiff.stress;
+        });
+    }
+
+    Vec3 traction(std::size_t i) const { return pull_[i] / (wall_.thickness_mm_ * std::sqrt(wall_.area_mm2_[i])); }
+
+    /// What holds the wall goes towards where its law says, as far as is stable; how far it still has to go.
+    double let_slip(std::vector<Vec3>& x) {
+        pull_.assign(x.size(), Vec3::Zero());
+        add_shell_forces(soft_, x, pull_, law_.fibres);
+        double far = 0.0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            if (!wall_.fixed_[i]) continue;
+            constexpr double part = 0.01;
+            const Vec3 pulled = traction(i), wanted = law_.slip(i, pulled);
+            const double size = part * pulled.norm();
+            const double gain = size > 0.0 ? (law_.slip(i, (1.0 + part) * pulled) - wanted).norm() / size : 0.0;
+            const double stiff = wall_.holding_[i] / (wall_.thickness_mm_ * std::sqrt(wall_.area_mm2_[i]));
+            const Vec3 go = (wanted - slipped_[i]) / (1.0 + gain * stiff);
+            slipped_[i] += go;
+            x[i] = wall_.rest_[i] + slipped_[i];
+            far = std::max(far, go.norm());
+        }
+        return far;
+    }
+
+    const PushedWall& wall_;
+    const PushedLaw& law_;
+    ShellModel soft_;
+    double times_ = 1.0;
+    std::vector<Vec3> more_, slipped_, pull_;
+};
+
+PushResult PushedWall::push(const Push& push, const PushedLaw& law, const std::function<bool()>& go_on) const {
     PushResult out;
     const std::size_t samples = push.ball_mm.size();
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -234,24 +367,21 @@ PushResult PushedWall::push(const Push& push, const std::function<bool()>& go_on
     const Vec3 along = farthest == first ? Vec3(Vec3::Zero()) : Vec3((farthest - first).normalized());
     const Marker marker(shell_, rest_, push.marker_mm);
     std::vector<Vec3> x = rest_;
+    Sample sample(*this, law);
+    const bool remembers = law.remember || law.remember_slip;
     for (std::size_t k = 0; k < samples; ++k) {
         // An elastic wall without friction does not remember the way: unloading is loading once more.
         const auto met = std::find_if(push.ball_mm.begin(), push.ball_mm.begin() + static_cast<std::ptrdiff_t>(k),
                                       [&](const Vec3& p) { return (p - push.ball_mm[k]).squaredNorm() < 1e-12; });
         const auto known = static_cast<std::size_t>(met - push.ball_mm.begin());
-        if (known < k) {
+        if (law.begin) law.begin(k);
+        if (known < k && !remembers) {
             out.marker_mm[k] = out.marker_mm[known];
             out.force_mn[k] = out.force_mn[known];
             continue;
         }
-        const Ball ball(shell_, push.ball_mm[k], ball_radius_mm_, 4.0 * spacing_mm_, bed_kpa_per_mm_);
         Vec3 total = Vec3::Zero();
-        const ShellLoad load = [&](std::span<const Vec3> at_x, std::span<Vec3> force,
-                                   std::vector<Eigen::Triplet<double>>& stiffness) {
-            return ball(at_x, force, stiffness, total);
-        };
-        if ((go_on && !go_on()) ||
-            !shell_equilibrium(shell_, fixed_, load, x, {.force_tolerance_mn = force_tolerance_mn})) {
+        if ((go_on && !go_on()) || !sample.solve(push.ball_mm[k], x, total)) {
             out.at_rest = false;
             return out;
         }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "softbody/membrane.h"
 #include "softbody/shell.h"
 
 namespace cathlab {
@@ -44,6 +45,18 @@ struct PushResult {
     bool at_rest = true;           ///< false where a sample did not come to rest: it and those after it are NaN
 };
 
+/// What effects make of the wall: asked sample by sample, in order.  A member that is empty changes nothing.
+struct PushedLaw {
+    std::function<void(std::size_t sample)> begin;  ///< before a sample is solved
+    Fibres fibres = {};
+    double support_kpa_per_mm = 0.0;  ///< an elastic foundation round the wall
+    std::function<void(const MembraneMaterial&, MembranePoint&)> membrane;
+    std::function<void(const MembranePoint&)> remember;
+    /// How far what holds the wall gives way under a traction (kPa of the section) at held particle i, mm.
+    std::function<Vec3(std::size_t i, const Vec3& traction)> slip;
+    std::function<void(std::size_t i, const Vec3& traction)> remember_slip;
+};
+
 /// The rig built: const, may be used by many threads.
 class PushedWall {
 public:
@@ -53,11 +66,19 @@ public:
     /// Samples are solved in order, each from the one before; a place of the ball met before is taken from there.
     /// go_on: asked before every sample; false ends the push as if it had not come to rest.
     PushResult push(const Push& push, const std::function<bool()>& go_on = {}) const;
+    /// The same with a law of effects: within a sample the wall is solved anew until what they make of its stress and of
+    /// what holds it no longer changes.
+    PushResult push(const Push& push, const PushedLaw& law, const std::function<bool()>& go_on = {}) const;
+    std::size_t triangles() const { return shell_.triangles.size(); }
 
     std::size_t particles() const { return rest_.size(); }
 
 private:
+    class Sample;
     std::vector<Vec3> rest_;
+    std::vector<double> area_mm2_;
+    std::vector<double> holding_;  // (n) mN/mm of held particles; of the others 0
+    double thickness_mm_ = 1.0;
     std::vector<std::uint8_t> fixed_;
     ShellModel shell_;
     double ball_radius_mm_ = 0.0, spacing_mm_ = 0.0, bed_kpa_per_mm_ = 0.0;

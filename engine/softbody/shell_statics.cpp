@@ -15,6 +15,35 @@ constexpr int most_halvings = 25;
 constexpr double worth_keeping = 0.3;  // factors that brought the largest force below this part of itself
 constexpr double sufficient = 1e-4;    // part of the decrease that the slope promises (Armijo)
 
+/// W = 1/2 S : (C - 1) of each triangle's volume.
+double stress_energy(const ShellModel& model, std::span<const Vec3> stress, std::span<const Vec3> x) {
+    double energy = 0.0;
+    for (std::size_t k = 0; k < stress.size(); ++k) {
+        const ShellTriangle& t = model.triangles[k];
+        const Eigen::Matrix2d e = shell_strain(t, x);
+        energy += t.area_mm2 * t.thickness_mm *
+                  (stress[k][0] * e(0, 0) + stress[k][1] * e(1, 1) + 2.0 * stress[k][2] * e(0, 1));
+    }
+    return energy;
+}
+
+void add_stress_forces(const ShellModel& model, std::span<const Vec3> stress, std::span<const Vec3> x,
+                       std::vector<Vec3>& force) {
+    for (std::size_t k = 0; k < stress.size(); ++k) {
+        const ShellTriangle& t = model.triangles[k];
+        const auto place = [&](int corner) { return x[static_cast<std::size_t>(t.corner[corner])]; };
+        Eigen::Matrix<double, 3, 2> edges;
+        edges << place(1) - place(0), place(2) - place(0);
+        Eigen::Matrix2d s;
+        s << stress[k][0], stress[k][2], stress[k][2], stress[k][1];
+        const Eigen::Matrix<double, 3, 2> pull =
+            t.area_mm2 * t.thickness_mm * edges * t.rest_inverse * s * t.rest_inverse.transpose();
+        force[static_cast<std::size_t>(t.corner[1])] -= pull.col(0);
+        force[static_cast<std::size_t>(t.corner[2])] -= pull.col(1);
+        force[static_cast<std::size_t>(t.corner[0])] += pull.col(0) + pull.col(1);
+    }
+}
+
 }  // namespace
 
 ShellLoad dead_load(std::vector<Vec3> force) {
@@ -44,14 +73,16 @@ bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fi
     const auto energy_at = [&](const std::vector<Vec3>& at, std::vector<Vec3>& on) {
         std::fill(on.begin(), on.end(), Vec3::Zero());
         load_stiffness.clear();
-        return shell_energy(model, at) + load(at, on, load_stiffness);
+        return shell_energy(model, at, rest.fibres) + stress_energy(model, rest.more_stress, at) +
+               load(at, on, load_stiffness);
     };
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
     Eigen::SparseMatrix<double> k(3 * free, 3 * free);
     std::vector<int> pattern;  // rows of the matrix that the factorisation was laid out for
     double energy = energy_at(x, force), before = 0.0;
     for (int iteration = 0; iteration < rest.most_iterations; ++iteration) {
-        add_shell_forces(model, x, force);
+        add_shell_forces(model, x, force, rest.fibres);
+        add_stress_forces(model, rest.more_stress, x, force);
         Eigen::VectorXd residual(3 * free);
         double largest = 0.0;
         for (std::size_t i = 0; i < n; ++i) {
@@ -70,7 +101,7 @@ bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fi
                 entries.emplace_back(static_cast<int>(3 * unknown(r) + r % 3), static_cast<int>(3 * unknown(c) + c % 3),
                                      value);
             };
-            const Eigen::SparseMatrix<double> shell = shell_stiffness(model, x);
+            const Eigen::SparseMatrix<double> shell = shell_stiffness(model, x, rest.fibres);
             double diagonal = 0.0;
             for (Eigen::Index c = 0; c < shell.outerSize(); ++c)
                 for (Eigen::SparseMatrix<double>::InnerIterator it(shell, c); it; ++it) {

@@ -24,6 +24,9 @@ ShellLoad dead_load(std::vector<Vec3> force);
 struct ShellRest {
     double force_tolerance_mn = 1e-4;  ///< no free particle feels more
     int most_iterations = 200;
+    Fibres fibres = {};
+    /// (triangles) second Piola-Kirchhoff stress that is added to the law's, kPa (11, 22, 12), or empty.
+    std::span<const Vec3> more_stress = {};
 };
 
 /// Moves x to rest.  fixed: one a particle, 1 = held where x has it.  False where it does not come to rest.

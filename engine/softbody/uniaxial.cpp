@@ -35,7 +35,8 @@ bool uniaxial_rest(const std::function<void(MembranePoint&)>& law, double stiffn
             round = anew_after;
             continue;
         }
-        Vec2 move(-(f.x() * slope(1, 1) - slope(0, 1) * f.y()) / det, -(slope(0, 0) * f.y() - f.x() * slope(1, 0)) / det);
+        Vec2 move(-(f.x() * slope(1, 1) - slope(0, 1) * f.y()) / det,
+                  -(slope(0, 0) * f.y() - f.x() * slope(1, 0)) / det);
         // By so much of themselves at most: the law knows nothing of stretches below 0.
         const double far = std::max(std::fabs(move.x()) / u.x(), std::fabs(move.y()) / u.y());
         if (far > largest_move) move *= largest_move / far;

@@ -10,8 +10,7 @@ void let_slip(Parts& p, const EffectContext& context, std::span<Vec3> support_di
     if (effects.empty()) return;
     const SoftBodyModel& wall = *p.wall;
     const Entity vessel = p.world->owner<SupportState>();
-    if (!p.world->get<SlipState>(vessel))
-        p.world->add(vessel, SlipState{std::vector<Vec3>(wall.size(), Vec3::Zero())});
+    if (!p.world->get<SlipState>(vessel)) p.world->add(vessel, SlipState{std::vector<Vec3>(wall.size(), Vec3::Zero())});
     std::vector<Vec3>& slipped = p.world->get<SlipState>(vessel)->slipped_mm;
     const SoftBodyScratch& scratch = *p.wall_scratch;
     const bool known = scratch.goal.size() == wall.size();  // a substep has been done

@@ -45,9 +45,19 @@ TEST(Confusion, TheMissingEffectOfAHeartIsNamed) {
         expect_named("heart-motion", effect, 0.12);
 }
 
+TEST(Confusion, TheMissingEffectOfAWallIsNamed) {
+    for (const char* effect : {"viscoelasticity", "softening"}) {
+        const Explanation found = explained({"wall-tension", effect, 2, 12, 480});
+        EXPECT_EQ(named(found), effect);
+        EXPECT_LE(found.held_out_after, 1.3 * 0.0012) << effect;
+    }
+}
+
 TEST(Confusion, NothingIsNamedWhereNothingActs) {
     for (const char* kind : {"catheter-tip", "heart-motion"})
         EXPECT_EQ(named(explained({kind, "", 1, 12, 800})), "nothing missing") << kind;
+    for (const std::uint64_t seed : {12ULL, 13ULL})  // rubber, a straight line
+        EXPECT_EQ(named(explained({"wall-tension", "", 1, seed, 480})), "nothing missing") << seed;
 }
 
 TEST(Confusion, WhatNoEffectMakesIsNotGivenAName) {
@@ -59,16 +69,20 @@ TEST(Confusion, WhatNoEffectMakesIsNotGivenAName) {
     EXPECT_EQ(named(explained({"heart-motion", "step", 2, 13, 800})), "unexplained");
 }
 
+int rows_of(const std::string& kind) {
+    return kind == "wall-tension" ? 640 : 1200;
+}
+
 /// Every effect, two strengths, CATHLAB_MATRIX_SEEDS seeds (3), and as many clean sets as there are others.
 TEST(Confusion, DISABLED_WholeMatrix) {
     const char* wanted = std::getenv("CATHLAB_MATRIX_SEEDS");
     const int seeds = wanted != nullptr ? std::atoi(wanted) : 3;
     const char* only = std::getenv("CATHLAB_MATRIX_KIND");
-    for (const std::string kind : {"catheter-tip", "heart-motion"}) {
+    for (const std::string kind : {"catheter-tip", "heart-motion", "wall-tension", "tendon-tip"}) {
         if (only != nullptr && kind != only) continue;
         std::map<std::string, std::map<std::string, int>> matrix;
         const auto add = [&](const std::string& effect, int strength, int seed) {
-            const Explanation found = explained({kind, effect, strength, static_cast<std::uint64_t>(100 + seed), 1200});
+            const Explanation found = explained({kind, effect, strength, static_cast<std::uint64_t>(100 + seed), rows_of(kind)});
             const bool pair = std::find(found.ambiguous_with.begin(), found.ambiguous_with.end(), effect) !=
                               found.ambiguous_with.end();
             std::string name = named(found);

@@ -121,26 +121,28 @@ TEST(Explain, FitsTheModulusOfAStraightLine) {
         "sensor_noise = 0.001\n[setup]\nspecimen = \"strip\"\nthickness_mm = 1.0\nmode = \"tension\"\n",
         csv.str());
     const Explanation found = explain(read_dataset(folder.path()));
-    ASSERT_EQ(found.base_parameters.size(), 1U);
+    ASSERT_EQ(found.base_parameters.size(), 2U);
     EXPECT_EQ(found.base_parameters[0].first, "modulus_kpa");
     EXPECT_NEAR(found.base_parameters[0].second, 450.0, 1.0);
     EXPECT_EQ(found.verdict, Verdict::nothing_missing);
 }
 
-TEST(Explain, SaysWhatItCannotYetDo) {
+TEST(Explain, AToolWhosePlaceIsNotKnownIsToldByItsRow) {
     std::string csv = "run,t_s,tool_x_mm,tool_y_mm,tool_z_mm,sensor_x_mm,sensor_y_mm,sensor_z_mm\n";
-    for (int i = 0; i < 20; ++i) csv += "0," + std::to_string(i) + ",1,2,3,4,5,6\n";
+    for (int i = 0; i < 40; ++i) csv += "0," + std::to_string(i) + ",,2,30,11,0,50\n";
     const Folder folder(
         "format = 1\nkind = \"wall-contact\"\ntitle = \"t\"\nsource = \"s\"\nlicense = \"l\"\ndeclared_effects = "
         "[]\nsensor_noise = 0.1\n[setup]\ntube = { radius_mm = 10.0, length_mm = 100.0, thickness_mm = 1.0 }\n"
-        "tool_radius_mm = 2.0\nsensor_rest_mm = [[1.0, 2.0, 3.0]]\ndensity_kg_m3 = 1000.0\n"
-        "material = { young_modulus_kpa = 500.0, poisson = 0.49 }\n",
+        "tool_radius_mm = 2.0\nsensor_rest_mm = [[11.0, 0.0, 50.0]]\ndensity_kg_m3 = 1000.0\n"
+        "material = { young_modulus_kpa = 500.0, poisson = 0.49 }\n"
+        "[[setup.fixed]]\nname = \"start\"\ncenter_mm = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]\n"
+        "radius_mm = 12.0\nhalf_thickness_mm = 0.1\n",
         csv);
     const Dataset data = read_dataset(folder.path());
     try {
         explain(data);
         FAIL();
     } catch (const UserError& e) {
-        EXPECT_NE(std::string(e.what()).find("cannot yet be its rig"), std::string::npos);
+        EXPECT_NE(std::string(e.what()).find("the tool's place is missing"), std::string::npos) << e.what();
     }
 }
