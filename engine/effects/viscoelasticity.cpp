@@ -23,7 +23,11 @@ public:
     void points(std::size_t count) override { memory_.resize(count); }
     void stress(const EffectContext& context, MembranePoint& point) override {
         const Memory& m = memory_[point.index];
-        if (share_ <= 0.0 || !m.started) return;
+        if (share_ <= 0.0) return;
+        if (!m.started) {
+            point.at_once *= 1.0 + share_;
+            return;
+        }
         double kept = 1.0, at_once = share_;
         relaxation(context.dt, kept, at_once);
         point.stress += kept * m.over + at_once * (point.stress - m.elastic);

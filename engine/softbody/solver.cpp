@@ -246,11 +246,16 @@ SoftBodyState rest_state(const SoftBodyModel& model) {
     return state;
 }
 
-void ask_law(const SoftBodyModel& model, const SoftBodyState& state, SoftBodyScratch& scratch, const AskLaw& law,
+void ask_law(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const AskLaw& law,
              const Workers& workers) {
     scratch.law.resize(model.elastic.groups() * 4 * kernel::lanes);
     workers.for_ranges(model.elastic.groups(), shell_grain, [&](std::size_t begin, std::size_t end) {
         ask_law(model.shell, model.elastic, scratch.fibres, law, state.x, scratch.law, begin, end);
+        for (std::size_t g = begin; g < end; ++g)
+            for (std::size_t l = 0; l < kernel::lanes; ++l) {
+                double& tangent = state.tangent[g * kernel::lanes + l];
+                tangent = std::max(tangent, scratch.law[g * 4 * kernel::lanes + l]);
+            }
     });
 }
 

@@ -62,8 +62,9 @@ struct SupportMotion {
 };
 
 /// Elastic form: asks the membrane's law at every triangle (elastic.h) where the wall is now, for the substep to come.
-/// `law` is called from several threads, for different points.
-void ask_law(const SoftBodyModel& model, const SoftBodyState& state, SoftBodyScratch& scratch, const AskLaw& law,
+/// `law` is called from several threads, for different points.  What it says is stiffer at once is held the more firmly
+/// from this substep on (state.tangent).
+void ask_law(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const AskLaw& law,
              const Workers& workers);
 
 /// x~ = x + h v + h^2 f / m, external_force one a particle or empty.  Fixed particles stay where they are, and what

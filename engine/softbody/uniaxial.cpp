@@ -4,10 +4,40 @@
 #include <cmath>
 
 namespace cathlab {
+namespace {
+
+/// The zero of a function that rises, between two places (the Illinois way of the false position); false where it has
+/// none there.
+template <class F>
+bool rising_zero(const F& f, double low, double high, double enough, double& zero) {
+    constexpr int most_rounds = 100;
+    double at_low = f(low), at_high = f(high);
+    if (!(at_low <= 0.0 && at_high >= 0.0)) return false;
+    int side = 0;
+    for (int round = 0; round < most_rounds; ++round) {
+        zero = at_high > at_low ? (low * at_high - high * at_low) / (at_high - at_low) : 0.5 * (low + high);
+        const double here = f(zero);
+        if (std::fabs(here) < enough || high - low < 1e-13) return true;
+        if (here < 0.0) {
+            low = zero;
+            at_low = here;
+            if (side == -1) at_high *= 0.5;
+            side = -1;
+        } else {
+            high = zero;
+            at_high = here;
+            if (side == 1) at_low *= 0.5;
+            side = 1;
+        }
+    }
+    return false;
+}
+
+}  // namespace
 
 bool uniaxial_rest(const std::function<void(MembranePoint&)>& law, double stiffness_kpa, double stress_kpa,
                    Uniaxial& from) {
-    constexpr int most_rounds = 60, anew_after = 6;  // rounds
+    constexpr int most_rounds = 25, anew_after = 6;
     constexpr double small = 1e-7, tolerance = 1e-7, largest_move = 0.1, least = 0.02, most = 20.0;
     const auto force = [&](const Vec2& u) {
         MembranePoint point;
@@ -20,7 +50,7 @@ bool uniaxial_rest(const std::function<void(MembranePoint&)>& law, double stiffn
     Eigen::Matrix2d slope = from.slope;
     Vec2 f = force(u);
     for (int round = 0; round < most_rounds; ++round) {
-        if (!(f.cwiseAbs().sum() < 1e300)) return false;
+        if (!(f.cwiseAbs().sum() < 1e300)) break;
         if (f.cwiseAbs().maxCoeff() < enough) {
             from = {u.x(), u.y(), slope};
             return true;
@@ -31,7 +61,7 @@ bool uniaxial_rest(const std::function<void(MembranePoint&)>& law, double stiffn
         }
         const double det = slope.determinant();
         if (!(std::fabs(det) > 1e-14 * stiffness_kpa * stiffness_kpa)) {
-            if (round >= anew_after) return false;
+            if (round >= anew_after) break;
             round = anew_after;
             continue;
         }
@@ -47,7 +77,18 @@ bool uniaxial_rest(const std::function<void(MembranePoint&)>& law, double stiffn
         u = next;
         f = there;
     }
-    return false;
+    // A law with corners: one stretch within the other, both forces rise with theirs.
+    double across = 1.0;
+    const auto along_force = [&](double along) {
+        const double middle = 1.0 / std::sqrt(along);
+        const auto sideways = [&](double a) { return force(Vec2(along, a)).y(); };
+        if (!rising_zero(sideways, 0.2 * middle, 4.0 * middle, 0.1 * enough, across)) return std::nan("");
+        return force(Vec2(along, across)).x();
+    };
+    double along = 1.0;
+    if (!rising_zero(along_force, 0.2, 4.0, enough, along)) return false;
+    from = {along, across, Eigen::Matrix2d::Zero()};
+    return true;
 }
 
 }  // namespace cathlab

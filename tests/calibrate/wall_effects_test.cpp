@@ -40,6 +40,8 @@ std::vector<double> stepped(const char* name, const std::vector<double>& values,
     parameters.form = WallForm::elastic;
     parameters.young_kpa = young_kpa;
     parameters.poisson = poisson;
+    parameters.damping_per_s = 0.0;
+    parameters.surrounding_kpa_s_per_mm = 1e-4;  // keeps a piece that nothing holds where it is
     const SoftBodyModel wall = build_soft_body(specimen.sample, parameters, {});
     SoftBodyState state = rest_state(wall);
     SoftBodyScratch scratch;
@@ -74,7 +76,7 @@ std::vector<double> closed(const char* name, const std::vector<double>& values, 
                            int every) {
     Acting acting(name, values);
     acting.effect->points(1);
-    const MembraneMaterial material{young_kpa / (2.0 * (1.0 + poisson)), poisson / (1.0 - poisson), Vec2(-1.0, 0.0)};
+    const MembraneMaterial material{young_kpa / (2.0 * (1.0 + poisson)), poisson / (1.0 - poisson), Vec2(1.0, 0.0)};
     Effect* const effects[1] = {acting.effect.get()};
     std::vector<double> out;
     Uniaxial at;
@@ -114,7 +116,7 @@ void compare(const char* name, const std::vector<double>& values, double within)
 }
 
 TEST(WallEffects, AreTheSameInTheStepsAsInTheClosedForm) {
-    compare("stiffening", {40.0, 1.5, 80.0, 0.2, 0.0}, 0.02);
+    compare("stiffening", {40.0, 1.5, 10.0, 0.2, 0.0}, 0.02);
     compare("slack", {0.05}, 0.02);
     compare("creep", {0.1, 0.5}, 0.02);
     compare("entanglement", {0.5}, 0.02);
