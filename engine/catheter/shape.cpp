@@ -82,13 +82,22 @@ Pose along_arc(const Pose& start, double length, double bend, double direction) 
 }
 
 Pose segment_end(const Pose& start, double length, const Vec2& bend, double taper) {
+    if (taper != 0.0) {
+        Pose at = start;
+        for (int k = 0; k < parts_of_a_taper; ++k)
+            at = segment_end(at, length / parts_of_a_taper, taper_share(taper, k) * bend, 0.0);
+        return at;
+    }
     const double angle = std::sqrt(bend.squaredNorm());
-    const double direction = angle > 0.0 ? det::atan2(bend.y(), bend.x()) : 0.0;
-    if (taper == 0.0) return along_arc(start, length, angle, direction);
-    Pose at = start;
-    for (int k = 0; k < parts_of_a_taper; ++k)
-        at = along_arc(at, length / parts_of_a_taper, taper_share(taper, k) * angle, direction);
-    return at;
+    if (angle < 1e-8) return along_arc(start, length, 0.0, 0.0);
+    // along_arc by half angles: 1 - cos b = 2 s^2, sin b = 2 s c.
+    const double s = det::sin(0.5 * angle), c = det::cos(0.5 * angle);
+    const Vec2 way = bend / angle;
+    Pose end;
+    const double out = 2.0 * length * s * s / angle;
+    end.position = start.to_world(Vec3(out * way.x(), out * way.y(), 2.0 * length * s * c / angle));
+    end.orientation = start.orientation * Quat(c, -s * way.y(), s * way.x(), 0.0);
+    return end;
 }
 
 double base_arc_mm(const CatheterSpec& spec, const CatheterState& state) {

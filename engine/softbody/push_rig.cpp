@@ -224,7 +224,8 @@ PushedWall::PushedWall(const PushRig& rig)
     holding_.assign(rest_.size(), 0.0);
     for (std::size_t i = 0; i < rest_.size(); ++i)
         for (int axis = 0; fixed_[i] && axis < 3; ++axis)
-            holding_[i] = std::max(holding_[i], k.coeff(static_cast<Eigen::Index>(3 * i) + axis, static_cast<Eigen::Index>(3 * i) + axis));
+            holding_[i] = std::max(
+                holding_[i], k.coeff(static_cast<Eigen::Index>(3 * i) + axis, static_cast<Eigen::Index>(3 * i) + axis));
 }
 
 PushResult PushedWall::push(const Push& push, const std::function<bool()>& go_on) const {
@@ -250,15 +251,17 @@ public:
         for (int round = 0;; ++round) {
             if (law_.membrane) ask(x);
             const std::vector<Vec3> before = x;
-            if (!shell_equilibrium(soft_, wall_.fixed_, load, x,
-                                   {.force_tolerance_mn = force_tolerance_mn, .fibres = law_.fibres, .more_stress = more_}))
+            if (!shell_equilibrium(
+                    soft_, wall_.fixed_, load, x,
+                    {.force_tolerance_mn = force_tolerance_mn, .fibres = law_.fibres, .more_stress = more_}))
                 return false;
             double moved = 0.0;
             for (std::size_t i = 0; i < x.size(); ++i) moved = std::max(moved, (x[i] - before[i]).norm());
             if (law_.slip) moved = std::max(moved, let_slip(x));
             if (!again || round >= most_rounds || (round > 0 && moved < still_mm)) break;
         }
-        if (law_.membrane && law_.remember) each_point(x, [&](MembranePoint& p, const MembraneMaterial& m) {
+        if (law_.membrane && law_.remember)
+            each_point(x, [&](MembranePoint& p, const MembraneMaterial& m) {
                 law_.membrane(m, p);
                 law_.remember(p);
             });

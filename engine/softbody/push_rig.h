@@ -66,8 +66,8 @@ public:
     /// Samples are solved in order, each from the one before; a place of the ball met before is taken from there.
     /// go_on: asked before every sample; false ends the push as if it had not come to rest.
     PushResult push(const Push& push, const std::function<bool()>& go_on = {}) const;
-    /// The same with a law of effects: within a sample the wall is solved anew until what they make of its stress and of
-    /// what holds it no longer changes.
+    /// The same with a law of effects: within a sample the wall is solved anew until what they make of its stress and
+    /// of what holds it no longer changes.
     PushResult push(const Push& push, const PushedLaw& law, const std::function<bool()>& go_on = {}) const;
     std::size_t triangles() const { return shell_.triangles.size(); }
 

@@ -17,7 +17,8 @@ struct Uniaxial {
 
 /// The stretches at which the force by the section at rest, S_11 along, is stress_kpa and S_22 is 0; `law` writes
 /// point.stress at point.c and keeps nothing.  Newton's method from `from`, its slopes by Broyden's update of the last
-/// ones [broyden1965] and anew where that is slow; where a law has corners, one stretch within the other.  False where it does not get there.
+/// ones [broyden1965] and anew where that is slow; where a law has corners, one stretch within the other.  False where
+/// it does not get there.
 bool uniaxial_rest(const std::function<void(MembranePoint&)>& law, double stiffness_kpa, double stress_kpa,
                    Uniaxial& from);
 

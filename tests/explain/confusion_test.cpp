@@ -82,7 +82,8 @@ TEST(Confusion, DISABLED_WholeMatrix) {
         if (only != nullptr && kind != only) continue;
         std::map<std::string, std::map<std::string, int>> matrix;
         const auto add = [&](const std::string& effect, int strength, int seed) {
-            const Explanation found = explained({kind, effect, strength, static_cast<std::uint64_t>(100 + seed), rows_of(kind)});
+            const Explanation found =
+                explained({kind, effect, strength, static_cast<std::uint64_t>(100 + seed), rows_of(kind)});
             const bool pair = std::find(found.ambiguous_with.begin(), found.ambiguous_with.end(), effect) !=
                               found.ambiguous_with.end();
             std::string name = named(found);

@@ -384,7 +384,8 @@ std::unique_ptr<Folder> record_tension(const Recipe& r) {
             } else if (e == "softening") {
                 const auto force = [&](double l) {
                     const double w = energy(l);
-                    return elastic(l) * (w < most ? 1.0 - 0.22 * size * std::tanh(1.3 * (most - w) / (0.5 * most)) : 1.0);
+                    return elastic(l) *
+                           (w < most ? 1.0 - 0.22 * size * std::tanh(1.3 * (most - w) / (0.5 * most)) : 1.0);
                 };
                 const double l = stretch_of(force, stress);
                 most = std::max(most, energy(l));
@@ -430,7 +431,9 @@ V robot_tip(const std::array<B, 3>& bends, double taper) {
         const double size = std::hypot(b[0], b[1]), way = std::atan2(b[1], b[0]);
         for (int k = 0; k < pieces; ++k) {
             const double turn = size / pieces * (1.0 + taper * ((k + 0.5) / pieces * 2.0 - 1.0));
-            const auto half = [&] { frame = times(times(times(frame, about(2, way)), about(1, 0.5 * turn)), about(2, -way)); };
+            const auto half = [&] {
+                frame = times(times(times(frame, about(2, way)), about(1, 0.5 * turn)), about(2, -way));
+            };
             half();
             go(at, frame, length / pieces);
             half();
@@ -488,7 +491,8 @@ std::unique_ptr<Folder> record_tendons(const Recipe& r) {
                     }
                     for (int a = 0; a < 2; ++a) q[s][a] += 0.2 * size * (mean[a] - wanted[s][a]);
                 } else if (e == "actuation-lag") {
-                    for (int a = 0; a < 2; ++a) lagged[s][a] += dt / fine / (0.25 * size) * (wanted[s][a] - lagged[s][a]);
+                    for (int a = 0; a < 2; ++a)
+                        lagged[s][a] += dt / fine / (0.25 * size) * (wanted[s][a] - lagged[s][a]);
                     q[s] = lagged[s];
                 } else if (e == "segment-coupling") {
                     if (s < 2)
@@ -541,8 +545,7 @@ std::unique_ptr<Folder> record_tendons(const Recipe& r) {
             for (int s = 0; s < 3; ++s)
                 for (int k = 0; k < 3; ++k) {
                     const double place = (first[s] + 120.0 * k) * rad;
-                    csv << ","
-                        << radius / gain[s] * (wanted[s][0] * std::cos(place) + wanted[s][1] * std::sin(place));
+                    csv << "," << radius / gain[s] * (wanted[s][0] * std::cos(place) + wanted[s][1] * std::sin(place));
                 }
             for (const double x : tip) csv << "," << x + noise * normal(random);
             csv << "\n";
@@ -553,7 +556,8 @@ std::unique_ptr<Folder> record_tendons(const Recipe& r) {
         "declared_effects = []\nsensor_noise = 0.3\n[setup]\ntendon_radius_mm = 4.0\n";
     for (int s = 0; s < 3; ++s) {
         toml += "[[setup.segment]]\nname = \"s" + std::to_string(s) + "\"\nlength_mm = 40.0\ntendons = [";
-        for (int k = 1; k <= 3; ++k) toml += std::string(k > 1 ? ", " : "") + "\"l" + std::to_string(3 * s + k) + "_mm\"";
+        for (int k = 1; k <= 3; ++k)
+            toml += std::string(k > 1 ? ", " : "") + "\"l" + std::to_string(3 * s + k) + "_mm\"";
         toml += "]\n";
     }
     return std::make_unique<Folder>(toml, csv.str());
@@ -572,11 +576,14 @@ const std::vector<std::string>& known_effects(const std::string& kind) {
                                                 "amplitude-drift", "rate-variability", "baseline-wander",
                                                 "sensor-drift"};
     static const std::vector<std::string> catheter{
-        "backlash",    "hysteresis",  "actuation-lag",  "segment-coupling", "actuation-gain", "gravity-sag",
-        "rest-memory", "respiration", "sensor-latency", "registration",     "sensor-drift",
-        "torsion-windup", "curvature-taper", "field-distortion"};
-    static const std::vector<std::string> tension{"stiffening", "viscoelasticity", "softening", "slack", "creep", "boundary-slip"};
-    static const std::vector<std::string> tendons{"backlash", "hysteresis", "actuation-lag", "segment-coupling", "tendon-routing", "rest-memory", "sensor-latency", "sensor-drift", "curvature-taper", "field-distortion"};
+        "backlash",     "hysteresis",     "actuation-lag",   "segment-coupling", "actuation-gain",
+        "gravity-sag",  "rest-memory",    "respiration",     "sensor-latency",   "registration",
+        "sensor-drift", "torsion-windup", "curvature-taper", "field-distortion"};
+    static const std::vector<std::string> tension{"stiffening", "viscoelasticity", "softening",
+                                                  "slack",      "creep",           "boundary-slip"};
+    static const std::vector<std::string> tendons{
+        "backlash",    "hysteresis",     "actuation-lag", "segment-coupling", "tendon-routing",
+        "rest-memory", "sensor-latency", "sensor-drift",  "curvature-taper",  "field-distortion"};
     if (kind == "wall-tension") return tension;
     if (kind == "tendon-tip") return tendons;
     return kind == "heart-motion" ? heart : catheter;
