@@ -31,7 +31,7 @@ insertion_mm = 760
     run.step({}, 50);  // laid along the middle of the vessels it finds its own way first
     double most = 0.0, push_mn = 0.0;
     const char* longer = std::getenv("CATHLAB_STRETCH_SECONDS");
-    const int steps = longer ? static_cast<int>(50.0 * std::atof(longer)) : 200;
+    const int steps = longer ? static_cast<int>(50.0 * std::atof(longer)) : 250;
     for (int k = 0; k < steps; ++k) {
         run.step(push(100.0));
         most = std::max(most, run.channels.wire_stretch_max);
