@@ -10,6 +10,7 @@
 #include "recorded_scene.h"
 #include "scene/load_scene.h"
 #include "session.h"
+#include "task/scene_task.h"
 
 namespace cathlab::play {
 namespace fs = std::filesystem;
@@ -87,7 +88,9 @@ void Loader::load_setup(const LoadRequest& request, SimulationOptions& options) 
     const SceneSpec plain = load_scene(setup.scene, setup.overlays, context_.data_root);
     const std::string overlay = setup_toml(setup, plain);
     std::vector<std::string> overlays = setup.overlays;
-    if (!setup.task.empty()) options.task = find_task(setup.task, context_.data_root).task;
+    const std::optional<TaskSpec> own = task_of(plain);
+    if (!setup.task.empty())
+        options.task = own && own->name == setup.task ? *own : find_task(setup.task, context_.data_root).task;
     std::string folder;
     if (request.run.record) {
         try {

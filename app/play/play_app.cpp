@@ -9,6 +9,7 @@
 #include "hud/hud.h"
 #include "play/earlier_trials.h"
 #include "scene/load_scene.h"
+#include "task/scene_task.h"
 
 namespace cathlab::play {
 namespace fs = std::filesystem;
@@ -45,8 +46,13 @@ PlayApp::PlayApp(PlayOptions options, const AppContext& context)
             log::warn(note);
         }
     if (options_.replay.empty()) {
-        setup_ = setup_of(load_scene(options_.scene, options_.overlays, context.data_root));
-        if (!options_.task.empty()) {
+        const SceneSpec scene = load_scene(options_.scene, options_.overlays, context.data_root);
+        setup_ = setup_of(scene);
+        const std::optional<TaskSpec> own = options_.task.empty() ? task_of(scene) : std::nullopt;
+        if (own) {  // the scene sets a task itself
+            choices_.tasks.push_back({own->name, scene.title, "", "", "", *own});
+            setup_.task = own->name;
+        } else if (!options_.task.empty()) {
             const TaskFile task = find_task(options_.task, context.data_root);
             if (options_.at_once)
                 setup_.task = task.id;

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "core/errors.h"
+#include "record/sums.h"
 #include "run_facts.h"
 
 namespace cathlab::play {
@@ -63,6 +64,7 @@ void Recorder::finish(bool complete, double wall_time_s, const Metrics* metrics)
         if (steps_ > 0) writer_->hash(steps_, session_.world().state_hash());
         if (metrics != nullptr) writer_->file("metrics.json", metrics_json(*metrics));
         writer_->finish(steps_, complete, wall_time_s, "");
+        write_sums(folder_);
     });
     writer_.reset();
 }

@@ -27,24 +27,14 @@ Simulation::Simulation(SimulationOptions options, const SceneModels& models, con
       pilot_(options_.scene, isocentre_of(session_)) {
     if (options_.replay && session_.anatomy_hash() != options_.replay->manifest.anatomy_hash)
         throw UserError(options_.replay->folder + ": the anatomy is built otherwise than when this run was recorded");
-    const auto* anatomy = session_.world().first<Shared<AnatomyModel>>();
-    if (options_.task && anatomy != nullptr) {
-        goal_at_rest_ = goal_position(*options_.task, **anatomy);
+    if (options_.task) {
+        goal_point_.emplace(session_.world(), *options_.task);
         tracker_.emplace(*options_.task);
         goal_.present = true;
         goal_.radius_mm = options_.task->radius_mm;
         goal_.hold_s = options_.task->hold_s;
-        goal_.position = goal_at_rest_;
+        goal_.position = goal_point_->now(session_.world());
         goal_.left_s = options_.task->time_limit_s;
-        double least = std::numeric_limits<double>::infinity();
-        const auto& rest = (*anatomy)->lumen.vertices;
-        for (std::size_t i = 0; i < rest.size(); ++i) {
-            const double d = (rest[i] - goal_at_rest_).squaredNorm();
-            if (d < least) {
-                least = d;
-                goal_vertex_ = i;
-            }
-        }
     }
     input_ = session_.base_input();
     if (!options_.recorder) return;
@@ -81,12 +71,7 @@ void Simulation::step(const Controls& controls, const InputSettings& settings) {
 }
 
 void Simulation::follow_goal() {
-    // The goal goes with the wall that is nearest to it.
-    const auto* anatomy = session_.world().first<Shared<AnatomyModel>>();
-    const auto* surface = session_.world().first<LumenSurfaceState>();
-    goal_.position = goal_at_rest_;
-    if (surface != nullptr)
-        goal_.position += surface->vertices[goal_vertex_] - (*anatomy)->lumen.vertices[goal_vertex_];
+    goal_.position = goal_point_->now(session_.world());
     tracker_->add(channels(), goal_.position, session_.dt());
     goal_.inside = tracker_->inside();
     goal_.distance_mm = tracker_->distance_mm();

@@ -16,7 +16,7 @@
 #include "record/run_reader.h"
 #include "session.h"
 #include "task/metrics.h"
-#include "task/task.h"
+#include "task/scene_task.h"
 
 namespace cathlab::play {
 
@@ -94,8 +94,7 @@ private:
     std::optional<Recorder> recorder_;
     std::string fault_;
     std::optional<GoalTracker> tracker_;
-    Vec3 goal_at_rest_ = Vec3::Zero();
-    std::size_t goal_vertex_ = 0;
+    std::optional<GoalPoint> goal_point_;
     GoalView goal_;
     MetricsAccumulator metrics_;
     Course course_;
