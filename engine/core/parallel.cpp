@@ -82,8 +82,9 @@ int Workers::threads() const {
     return pool_ ? pool_->arena.max_concurrency() : 1;
 }
 
-void Workers::for_ranges(std::size_t count, std::size_t grain,
-                         const std::function<void(std::size_t, std::size_t)>& body) const {
+template <class Partitioner>
+void Workers::run(std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t, std::size_t)>& body) const {
     if (count == 0) return;
     if (!pool_ || count <= grain) {
         body(0, count);
@@ -96,9 +97,20 @@ void Workers::for_ranges(std::size_t count, std::size_t grain,
     hand_over(&loop.begun);
     pool_->arena.execute([&] {
         tbb::this_task_arena::isolate([&] {
-            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, std::max<std::size_t>(1, grain)), Part(loop));
+            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, std::max<std::size_t>(1, grain)), Part(loop),
+                              Partitioner());
         });
     });
+}
+
+void Workers::for_ranges(std::size_t count, std::size_t grain,
+                         const std::function<void(std::size_t, std::size_t)>& body) const {
+    run<tbb::auto_partitioner>(count, grain, body);
+}
+
+void Workers::for_even_ranges(std::size_t count, std::size_t grain,
+                              const std::function<void(std::size_t, std::size_t)>& body) const {
+    run<tbb::static_partitioner>(count, grain, body);
 }
 
 }  // namespace cathlab

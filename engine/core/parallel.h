@@ -18,7 +18,14 @@ public:
     void for_ranges(std::size_t count, std::size_t grain,
                     const std::function<void(std::size_t begin, std::size_t end)>& body) const;
 
+    /// The same for items that cost alike, again and again in one order: each thread gets one part, and as far as can
+    /// be the one that it had last time, which is still in its cache.
+    void for_even_ranges(std::size_t count, std::size_t grain,
+                         const std::function<void(std::size_t begin, std::size_t end)>& body) const;
+
 private:
+    template <class Partitioner>
+    void run(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) const;
     struct Pool;
     std::shared_ptr<Pool> pool_;  // null for one thread
 };

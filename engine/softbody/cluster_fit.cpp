@@ -7,7 +7,7 @@ namespace cathlab {
 namespace {
 
 constexpr std::size_t particle_grain = 1024;
-constexpr std::size_t group_grain = 8;
+constexpr std::size_t group_grain = 4;
 
 const double* numbers(const std::vector<Vec3>& v) {
     return v.empty() ? nullptr : v.front().data();
@@ -45,8 +45,8 @@ void all_to_grid(const SoftBodyModel& model, const SoftBodyState& state, SoftBod
                  const Workers& workers) {
     if (model.precision == Precision::double_) return;
     scratch.grid.resize(3 * model.size() + 1);
-    workers.for_ranges(model.size(), particle_grain,
-                       [&](std::size_t begin, std::size_t end) { to_grid(state, scratch, begin, end); });
+    workers.for_even_ranges(model.size(), particle_grain,
+                            [&](std::size_t begin, std::size_t end) { to_grid(state, scratch, begin, end); });
 }
 
 void fit_all(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
@@ -61,8 +61,8 @@ void fit_all(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& 
     scratch.far.resize(model.group_count());
     scratch.goal.resize(model.size());
     const ClusterFit clusters(model);
-    workers.for_ranges(model.group_count(), group_grain,
-                       [&](std::size_t begin, std::size_t end) { clusters.fit(state, scratch, begin, end); });
+    workers.for_even_ranges(model.group_count(), group_grain,
+                            [&](std::size_t begin, std::size_t end) { clusters.fit(state, scratch, begin, end); });
 }
 
 void gather_goals(const SoftBodyModel& model, const SoftBodyState& state, SoftBodyScratch& scratch, std::size_t begin,

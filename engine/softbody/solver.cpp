@@ -40,7 +40,7 @@ bool elastic(const SoftBodyModel& model) {
 void pull(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, std::size_t begin,
           std::size_t end) {
     const kernel::Elastic view = model.elastic.view(scratch.fibres, numbers(scratch.stiffness_scale),
-                                                      scratch.law.empty() ? nullptr : scratch.law.data());
+                                                    scratch.law.empty() ? nullptr : scratch.law.data());
     kernel::best().shell_forces(view, numbers(state.x), scratch.slot_force.data(), state.tangent.data(), begin, end);
 }
 
@@ -54,8 +54,8 @@ void shell_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScrat
 void pull_all(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
     scratch.slot_force.resize(model.elastic.slots() * 3 * kernel::lanes);
     scratch.goal.resize(model.size());
-    workers.for_ranges(model.elastic.groups(), shell_grain,
-                       [&](std::size_t begin, std::size_t end) { pull(model, state, scratch, begin, end); });
+    workers.for_even_ranges(model.elastic.groups(), shell_grain,
+                            [&](std::size_t begin, std::size_t end) { pull(model, state, scratch, begin, end); });
 }
 
 /// Fits the clusters, or has the shell pull, as state.x is.
@@ -195,7 +195,7 @@ void predict_with(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScra
     scratch.compliance.resize(n);
     if (elastic(model)) {
         scratch.hold.resize(n);
-        workers.for_ranges(n, particle_grain, [&](std::size_t begin, std::size_t end) {
+        workers.for_even_ranges(n, particle_grain, [&](std::size_t begin, std::size_t end) {
             hold_now(model.elastic, model.stiffness, state.tangent, scratch.hold, begin, end);
         });
     }
@@ -206,7 +206,7 @@ void predict_with(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScra
         walked.support_share = supports->share;
     }
     const kernel::Set& set = kernel::best();
-    workers.for_ranges(n, particle_grain, [&](std::size_t begin, std::size_t end) {
+    workers.for_even_ranges(n, particle_grain, [&](std::size_t begin, std::size_t end) {
         set.predict(walked, begin, end);
         if (external_force.empty()) return;
         for (std::size_t i = begin; i < end; ++i) {
@@ -221,7 +221,8 @@ void predict_with(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScra
         }
     });
     if (elastic(model))
-        for (std::size_t b = 0; b < free_bodies(model, scratch).size(); ++b) turn_prediction(model, state, scratch, h, b);
+        for (std::size_t b = 0; b < free_bodies(model, scratch).size(); ++b)
+            turn_prediction(model, state, scratch, h, b);
 }
 
 }  // namespace
@@ -249,7 +250,7 @@ SoftBodyState rest_state(const SoftBodyModel& model) {
 void ask_law(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const AskLaw& law,
              const Workers& workers) {
     scratch.law.resize(model.elastic.groups() * 4 * kernel::lanes);
-    workers.for_ranges(model.elastic.groups(), shell_grain, [&](std::size_t begin, std::size_t end) {
+    workers.for_even_ranges(model.elastic.groups(), shell_grain, [&](std::size_t begin, std::size_t end) {
         ask_law(model.shell, model.elastic, scratch.fibres, law, state.x, scratch.law, begin, end);
         for (std::size_t g = begin; g < end; ++g)
             for (std::size_t l = 0; l < kernel::lanes; ++l) {
@@ -273,8 +274,8 @@ void predict(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& 
 
 void solve_goals(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, const Workers& workers) {
     prepare_goals(model, state, scratch, workers);
-    workers.for_ranges(model.size(), particle_grain,
-                       [&](std::size_t begin, std::size_t end) { find_goals(model, state, scratch, begin, end); });
+    workers.for_even_ranges(model.size(), particle_grain,
+                            [&](std::size_t begin, std::size_t end) { find_goals(model, state, scratch, begin, end); });
 }
 
 void solve_and_apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& scratch, double h, int passes,
@@ -290,7 +291,7 @@ void solve_and_apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyS
             prepare_goals(model, state, scratch, workers);
         const kernel::Particles walked = particles(model, state, scratch, h);
         const bool another = on_grid && pass + 1 < passes;
-        workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
+        workers.for_even_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
             // Piece by piece, so that the goals are still at hand when they are applied.
             for (std::size_t first = begin; first < end; first += piece) {
                 const std::size_t last = std::min(first + piece, end);
@@ -307,8 +308,8 @@ void apply(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& sc
     CATHLAB_CHECK(scratch.force.size() == model.size() && scratch.goal.size() == model.size(),
                   "predict and solve_goals come before apply");
     const kernel::Particles walked = particles(model, state, scratch, h);
-    workers.for_ranges(model.size(), particle_grain,
-                       [&](std::size_t begin, std::size_t end) { kernel::best().apply(walked, begin, end); });
+    workers.for_even_ranges(model.size(), particle_grain,
+                            [&](std::size_t begin, std::size_t end) { kernel::best().apply(walked, begin, end); });
 }
 
 void limit_speed(const SoftBodyModel& model, SoftBodyState& state, const SoftBodyScratch& scratch, double h,
@@ -436,13 +437,13 @@ void finish(const SoftBodyModel& model, SoftBodyState& state, SoftBodyScratch& s
         model.damping_per_s > 0.0) {  // the velocities go over to those of the clusters' rigid motions here as well
         all_to_grid(model, state, scratch, workers);
         fit_all(model, state, scratch, workers);
-        workers.for_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
+        workers.for_even_ranges(model.size(), particle_grain, [&](std::size_t begin, std::size_t end) {
             gather_goals(model, state, scratch, begin, end);
         });
     }
     const kernel::Particles walked = particles(model, state, scratch, h);
-    workers.for_ranges(model.size(), particle_grain,
-                       [&](std::size_t begin, std::size_t end) { kernel::best().finish(walked, begin, end); });
+    workers.for_even_ranges(model.size(), particle_grain,
+                            [&](std::size_t begin, std::size_t end) { kernel::best().finish(walked, begin, end); });
     if (walked.goal) state.goal.swap(scratch.goal);  // the next fit writes all of them anew
     for (std::size_t b = 0; b < free_bodies(model, scratch).size(); ++b) {
         const FreeBody& body = model.free_bodies[b];

@@ -9,15 +9,17 @@
 
 using namespace cathlab;
 
-TEST(Parallel, EveryItemIsVisitedOnceByRangesOfAtLeastTheGrain) {
+TEST(Parallel, EveryItemIsVisitedOnceByEitherKindOfRanges) {
     for (const int threads : {1, 2, 3, 4})
         for (const std::size_t count : {0U, 1U, 7U, 1000U, 10007U}) {
             std::vector<std::atomic<int>> visits(count);
-            Workers(threads).for_ranges(count, 64, [&](std::size_t begin, std::size_t end) {
+            const auto visit = [&](std::size_t begin, std::size_t end) {
                 EXPECT_LT(begin, end);
                 for (std::size_t i = begin; i < end; ++i) ++visits[i];
-            });
-            for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(visits[i], 1) << threads << " " << count;
+            };
+            Workers(threads).for_ranges(count, 64, visit);
+            Workers(threads).for_even_ranges(count, 64, visit);
+            for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(visits[i], 2) << threads << " " << count;
         }
 }
 
