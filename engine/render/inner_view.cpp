@@ -11,6 +11,7 @@
 #include "core/mesh.h"
 #include "core/units.h"
 #include "render/gl_device.h"
+#include "render/perspective.h"
 #include "shader_sources.h"
 
 namespace cathlab {
@@ -21,18 +22,6 @@ constexpr double near_mm = 0.15, far_mm = 400.0;  // the lens, and where no ligh
 constexpr double clearance_mm = 0.6;  // of the camera from the wall: the near plane's corners lie 0.26 mm away
 constexpr std::size_t tube_sides = 14;
 constexpr std::size_t floats_per_vertex = 13;
-
-// Perspective with z forward; row 0 of the picture is y = -height, so GL's up is our down.
-std::array<float, 16> clip_matrix(double field_of_view_deg, double aspect) {
-    const double f = 1.0 / std::tan(0.5 * field_of_view_deg * units::deg);
-    std::array<float, 16> m{};
-    m[0] = static_cast<float>(f / aspect);
-    m[5] = static_cast<float>(f);
-    m[10] = static_cast<float>((far_mm + near_mm) / (far_mm - near_mm));
-    m[14] = static_cast<float>(-2 * far_mm * near_mm / (far_mm - near_mm));
-    m[11] = 1.0F;
-    return m;
-}
 
 Vec3 wall_color(double force, double limit) {
     const Vec3 tissue(0.60, 0.125, 0.085), yellow(0.95, 0.72, 0.10), alarm(0.80, 0.62, 1.0);
@@ -232,7 +221,7 @@ void InnerView::draw(const FrameDescription& frame, int width, int height, Image
     gl.ClearColor(0, 0, 0, 1);
     gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     self.program.use();
-    const auto matrix = clip_matrix(camera.field_of_view_deg, aspect);
+    const auto matrix = perspective_matrix(camera.field_of_view_deg, aspect, near_mm, far_mm);
     gl.UniformMatrix4fv(self.program.uniform("u_clip"), 1, GL_FALSE, matrix.data());
     gl.Uniform1f(self.program.uniform("u_light_falloff"),
                  static_cast<float>(3.0 / (camera.light_range_mm * camera.light_range_mm)));

@@ -10,6 +10,7 @@
 #include "core/mesh.h"
 #include "core/units.h"
 #include "render/gl_device.h"
+#include "render/perspective.h"
 #include "shader_sources.h"
 
 namespace cathlab {
@@ -22,17 +23,6 @@ constexpr std::size_t tube_sides = 10;
 // A wire of its true width would be half a pixel: it is drawn at least so thick, as a share of its distance.
 constexpr double least_radius_share = 0.0032;
 constexpr Vec3::Scalar background = 0.004;
-
-std::array<float, 16> clip_matrix(double field_of_view_deg, double aspect) {
-    const double f = 1.0 / std::tan(0.5 * field_of_view_deg * units::deg);
-    std::array<float, 16> m{};
-    m[0] = static_cast<float>(f / aspect);
-    m[5] = static_cast<float>(f);
-    m[10] = static_cast<float>((far_mm + near_mm) / (far_mm - near_mm));
-    m[14] = static_cast<float>(-2 * far_mm * near_mm / (far_mm - near_mm));
-    m[11] = 1.0F;
-    return m;
-}
 
 std::array<std::uint8_t, 256> display_of_root() {
     std::array<std::uint8_t, 256> out{};
@@ -168,7 +158,8 @@ void OuterView::draw(const FrameDescription& frame, int width, int height, Image
     gl.ClearColor(dark, dark, dark, 1);
     gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     self.program.use();
-    const auto matrix = clip_matrix(frame.outer_camera->field_of_view_deg, static_cast<double>(width) / height);
+    const auto matrix =
+        perspective_matrix(frame.outer_camera->field_of_view_deg, static_cast<double>(width) / height, near_mm, far_mm);
     gl.UniformMatrix4fv(self.program.uniform("u_clip"), 1, GL_FALSE, matrix.data());
     const GLint alpha = self.program.uniform("u_alpha");
     gl.Uniform1f(alpha, 1.0F);
