@@ -4,29 +4,15 @@
 #include <cstdio>
 #include <mutex>
 
-#include "anatomy/mesh_file.h"
 #include "calibrate/contact_comparison.h"
 #include "core/units.h"
 #include "explain/dataset.h"
+#include "explain/wall_contact.h"
 #include "progress.h"
 #include "session.h"
 
 namespace cathlab {
 namespace {
-
-PushRig rig_of(const WallContactSetup& setup, double spacing_mm) {
-    PushRig rig;
-    rig.lumen = setup.mesh.empty() ? straight_lumen(setup.tube_radius_mm, setup.tube_length_mm, spacing_mm)
-                                   : load_mesh(setup.mesh, "mm", setup.mesh_place);
-    rig.thickness_mm = setup.thickness_mm;
-    rig.young_kpa = setup.young_modulus_kpa;
-    rig.poisson = setup.poisson;
-    rig.ball_radius_mm = setup.tool_radius_mm;
-    for (const HeldPlace& held : setup.held)
-        rig.held.push_back({held.center_mm, held.normal, held.radius_mm, held.half_thickness_mm});
-    rig.particle_spacing_mm = spacing_mm;
-    return rig;
-}
 
 std::vector<MeasuredPush> pushes_of(const Dataset& data) {
     const auto column = [&](const std::string& quantity) -> const std::vector<double>& {
@@ -95,7 +81,7 @@ void check_contacts(const ContactCheck& options, AppContext& context) {
         return !stop_wanted();
     };
     try {
-        const ContactComparison found = compare_contacts(rig_of(data.contact, options.particle_spacing_mm), pushes,
+        const ContactComparison found = compare_contacts(push_rig_of(data.contact, options.particle_spacing_mm), pushes,
                                                          Workers(options.threads), on_sample);
         progress.end();
         print(found);

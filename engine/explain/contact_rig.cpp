@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "anatomy/mesh_file.h"
 #include "core/errors.h"
 #include "explain/rigs.h"
+#include "explain/wall_contact.h"
 #include "softbody/push_rig.h"
 
 namespace cathlab {
@@ -15,25 +15,12 @@ namespace {
 // be solved hundreds of times.
 constexpr double spacing_mm = 4.5;
 
-PushRig rig_of(const WallContactSetup& setup) {
-    PushRig rig;
-    rig.lumen = setup.mesh.empty() ? straight_lumen(setup.tube_radius_mm, setup.tube_length_mm, spacing_mm)
-                                   : load_mesh(setup.mesh, "mm", setup.mesh_place);
-    rig.thickness_mm = setup.thickness_mm;
-    rig.young_kpa = setup.young_modulus_kpa;
-    rig.poisson = setup.poisson;
-    rig.ball_radius_mm = setup.tool_radius_mm;
-    for (const HeldPlace& held : setup.held)
-        rig.held.push_back({held.center_mm, held.normal, held.radius_mm, held.half_thickness_mm});
-    rig.particle_spacing_mm = spacing_mm;
-    return rig;
-}
-
 constexpr unsigned of_wall = hook_material | hook_membrane | hook_slip;
 
 class ContactRig final : public Rig {
 public:
-    ContactRig(const Dataset& data, const Split& split) : Rig(data, split), wall_(rig_of(data.contact)) {
+    ContactRig(const Dataset& data, const Split& split)
+        : Rig(data, split), wall_(push_rig_of(data.contact, spacing_mm)) {
         hooks_ = of_wall | hook_measure;
         for (const char* axis : {"tool_x", "tool_y", "tool_z"}) {
             const std::vector<double>& values = data.find(axis)->values;
