@@ -11,6 +11,7 @@
 #include "record/run_reader.h"
 #include "recorded_scene.h"
 #include "run_options.h"
+#include "run_verifier.h"
 #include "session.h"
 
 namespace cathlab {
@@ -26,52 +27,6 @@ struct ReplayOptions {
     double to_s = 0.0;  // 0: to the run's end
 };
 
-// Compares step by step: the trace has every channel of every step, the hashes all of the state every 50 steps.
-class Verifier {
-public:
-    explicit Verifier(const RunRecord& run) : run_(run), trace_(read_trace(run.folder, run.manifest.complete)) {
-        if (run.manifest.complete && static_cast<std::int64_t>(trace_.size()) != run.steps)
-            throw UserError(run.folder + "/trace.csv: has " + std::to_string(trace_.size()) + " steps, the run " +
-                            std::to_string(run.steps) + " (truncated or edited?)");
-    }
-    /// Before the step of this index (steps = steps done).  False if the state differs; then difference() says where.
-    bool state(std::int64_t steps, World& world) {
-        if (next_ >= run_.hashes.size() || run_.hashes[next_].steps != steps) return true;
-        const std::string entity = first_difference(run_.hashes[next_].hash, world.state_hash());
-        ++next_;
-        ++compared_;
-        if (entity.empty()) return true;
-        difference_ =
-            "the state differs after step " + std::to_string(steps) + ", first in the entity '" + entity + "'";
-        if (channel_step_ >= 0)
-            difference_ +=
-                "; the first channel that differs is " + channel_ + " in step " + std::to_string(channel_step_);
-        return false;
-    }
-    /// After the step of this index.
-    void channels(std::int64_t step, const Channels& now) {
-        if (channel_step_ >= 0 || step >= static_cast<std::int64_t>(trace_.size())) return;
-        if (const ChannelInfo* channel = first_difference(trace_[static_cast<std::size_t>(step)], now)) {
-            channel_ = std::string(channel->name);
-            channel_step_ = step;
-        }
-    }
-    bool channels_agree() const { return channel_step_ < 0; }
-    std::string channel_difference() const {
-        return "the state agrees but the channel " + channel_ + " differs in step " + std::to_string(channel_step_) +
-               " (trace.csv edited?)";
-    }
-    const std::string& difference() const { return difference_; }
-    std::size_t compared() const { return compared_; }
-
-private:
-    const RunRecord& run_;
-    std::vector<Channels> trace_;
-    std::size_t next_ = 0, compared_ = 0;
-    std::int64_t channel_step_ = -1;
-    std::string channel_, difference_;
-};
-
 bool pictured(const ReplayOptions& options) {
     const FilmArguments& film = options.film;
     return (!film.video.empty() && film.video != "none") || !film.labels.empty() || !film.dicom.empty() ||
@@ -81,7 +36,7 @@ bool pictured(const ReplayOptions& options) {
 void replay(const ReplayOptions& options, AppContext& context) {
     const RunRecord run = read_run(options.folder);
     const SceneSpec scene = recorded_scene(run, context);
-    std::optional<Verifier> verifier;
+    std::optional<RunVerifier> verifier;
     if (options.verify) verifier.emplace(run);
     const ThreadShares threads = share_threads(options.threads, pictured(options));
     Session session(scene, run.manifest.seed, threads.step, context);

@@ -10,9 +10,9 @@
 #include "commands.h"
 #include "core/errors.h"
 #include "progress.h"
-#include "record/run_reader.h"
 #include "record/sums.h"
 #include "recorded_scene.h"
+#include "run_verifier.h"
 #include "session.h"
 #include "task_watch.h"
 
@@ -66,36 +66,23 @@ Scored score_run(const std::string& folder, int threads, const AppContext& conte
     Session session(scene, run.manifest.seed, threads, context);
     if (session.anatomy_hash() != run.manifest.anatomy_hash)
         throw UserError(folder + ": the anatomy is built otherwise than when this run was recorded");
-    const std::vector<Channels> trace = read_trace(folder, run.manifest.complete);
+    RunVerifier verifier(run);
     TaskWatch watch(session.world(), task_of(scene));
     Progress progress("scoring");
-    bool trace_differs = false, state_differs = false;
-    std::size_t next = 0;
-    const auto compare_state = [&](std::int64_t steps) {
-        if (next >= run.hashes.size() || run.hashes[next].steps != steps) return;
-        const std::string entity = first_difference(run.hashes[next].hash, session.world().state_hash());
-        ++next;
-        if (entity.empty() || state_differs) return;
-        state_differs = true;
-        out.differences.push_back(folder + ": the state differs after step " + std::to_string(steps) +
-                                  ", first in the entity '" + entity + "' (inputs edited, or another build?)");
-    };
     for (std::int64_t step = 0; step < run.steps; ++step) {
         if (stop_wanted()) throw UserError("stopped; nothing was written");
-        compare_state(step);
+        verifier.state(step, session.world());
         session.step(run.input_at(step));
+        verifier.channels(step, session.channels());
         watch.add(session.world(), session.channels(), session.dt());
-        const auto k = static_cast<std::size_t>(step);
-        const ChannelInfo* channel = k < trace.size() ? first_difference(trace[k], session.channels()) : nullptr;
-        if (channel && !trace_differs) {
-            trace_differs = true;
-            out.differences.push_back(folder + "/trace.csv: " + std::string(channel->name) + " differs in step " +
-                                      std::to_string(step));
-        }
         progress.update(static_cast<double>(step + 1) / static_cast<double>(run.steps), folder);
     }
-    compare_state(run.steps);
+    verifier.state(run.steps, session.world());
     progress.end();
+    if (!verifier.difference().empty())
+        out.differences.push_back(folder + ": " + verifier.difference());
+    else if (!verifier.channels_agree())
+        out.differences.push_back(folder + ": " + verifier.channel_difference());
     out.metrics = watch.metrics();
     out.task = watch.task();
     out.reached = watch.reached();
