@@ -101,7 +101,7 @@ void Loader::load_setup(const LoadRequest& request, SimulationOptions& options) 
         } catch (const UserError& error) {
             if (!request.folder.empty()) throw;  // the user named it
             const std::lock_guard lock(mutex_);
-            error_ = std::string("this session is not recorded: ") + error.what();
+            error_ = std::string("this run is not recorded: ") + error.what();
             folder.clear();
         }
     }

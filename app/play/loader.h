@@ -18,7 +18,7 @@ namespace cathlab::play {
 struct LoadRequest {
     Setup setup;
     RunSettings run;
-    std::string folder;  ///< of this session's recording; "" = a new one under the settings' folder
+    std::string folder;  ///< of the recording; "" = a new one under the settings' folder
     std::string replay;  ///< a run folder: it is replayed instead, and not recorded
 };
 

@@ -41,7 +41,7 @@ Simulation::Simulation(SimulationOptions options, const SceneModels& models, con
     try {
         recorder_.emplace(*options_.recorder, session_, context);
     } catch (const UserError& error) {
-        fault_ = std::string("this session is not recorded: ") + error.what();
+        fault_ = std::string("this run is not recorded: ") + error.what();
     }
 }
 
