@@ -46,10 +46,11 @@ TEST(Confusion, TheMissingEffectOfAHeartIsNamed) {
 }
 
 TEST(Confusion, TheMissingEffectOfAWallIsNamed) {
-    for (const char* effect : {"viscoelasticity", "softening"}) {
+    // The fitted memory of the first leaves 1.26 of the noise; what a recording should come down to is 1.15.
+    for (const auto& [effect, share] : {std::pair{"viscoelasticity", 1.3}, std::pair{"softening", 1.15}}) {
         const Explanation found = explained({"wall-tension", effect, 2, 12, 480});
         EXPECT_EQ(named(found), effect);
-        EXPECT_LE(found.held_out_after, 1.3 * 0.0012) << effect;
+        EXPECT_LE(found.held_out_after, share * 0.0012) << effect;
     }
 }
 
