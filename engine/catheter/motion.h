@@ -16,7 +16,8 @@ struct CatheterState {
     std::vector<double> bend_rad;  ///< one a segment, >= 0, as taken
     std::vector<double>
         direction_rad;  ///< one a segment, in (-pi, pi]: the tip bends towards (cos, sin) of the base's x, y
-    std::vector<double> taper = {};   ///< one a segment, or empty for none: how unevenly its bend lies along it (shape.h)
+    std::vector<double> taper =
+        {};  ///< one a segment, or empty for none: how unevenly its bend lies along it (shape.h)
     std::vector<std::int64_t> route;  ///< nodes of the centre-line graph from the entry on (route.h)
 };
 void visit(Archive& archive, CatheterState& state);

@@ -31,8 +31,8 @@ Pose segment_end(const Pose& start, double length, const Vec2& bend, double tape
 /// The catheter of a state on a rail.  The curvature of its steerable part is that of its own bends, and where a
 /// guidewire leads it (Rail::lead) the mean of its own and the rail's, as of two elastic rods in one another.  What is
 /// still inside the sheath is straight: the segments come out tip first, each with its curvature (bend / length), so
-/// insertion moves nothing by a jump.  A segment with a taper t has the curvature bend / length (1 + t (2 s / length - 1)) at
-/// s from its base, in six arcs.
+/// insertion moves nothing by a jump.  A segment with a taper t has the curvature bend / length (1 + t (2 s / length -
+/// 1)) at s from its base, in six arcs.
 CatheterShape shape(const CatheterSpec& spec, const CatheterState& state, const Rail& rail,
                     double spacing_mm = catheter_spacing_mm);
 

@@ -16,10 +16,9 @@ namespace cathlab {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array run_file_names{"manifest.json", "inputs.jsonl", "trace.csv",  "events.jsonl",
-                                    "hashes.csv",    "metrics.json", "poster.png", "fluoro.mp4",
-                                    "fluoro.avi",    "labels.json",  "report.html", "result.json",
-                                    "sums.json"};
+constexpr std::array run_file_names{"manifest.json", "inputs.jsonl", "trace.csv",  "events.jsonl", "hashes.csv",
+                                    "metrics.json",  "poster.png",   "fluoro.mp4", "fluoro.avi",   "labels.json",
+                                    "report.html",   "result.json",  "sums.json"};
 
 std::string reason() {
     return std::strerror(errno);

@@ -1,13 +1,22 @@
-// Forces of the elastic shell (shell.h), included once an instruction set, as gather.inl is: one lane holds one triangle.
+// Forces of the elastic shell (shell.h), included once an instruction set, as gather.inl is: one lane holds one
+// triangle.
 using Bits = std::int64_t __attribute__((vector_size(BLOCK * sizeof(std::int64_t))));
 struct Vector {  // one of each lane
     Block x, y, z;
 };
 #define ELASTIC_INLINE TARGET static inline __attribute__((always_inline))
-ELASTIC_INLINE Block of_vector(const Vector& a, const Vector& b) { return a.x * b.x + (a.y * b.y + a.z * b.z); }
-ELASTIC_INLINE void all_lanes(double value, Block& to) { to = Block{} + value; }
-ELASTIC_INLINE void lanes_at(const double* from, Block& to) { __builtin_memcpy(&to, from, sizeof to); }
-ELASTIC_INLINE void put_lanes(const Block& from, double* to) { __builtin_memcpy(to, &from, sizeof from); }
+ELASTIC_INLINE Block of_vector(const Vector& a, const Vector& b) {
+    return a.x * b.x + (a.y * b.y + a.z * b.z);
+}
+ELASTIC_INLINE void all_lanes(double value, Block& to) {
+    to = Block{} + value;
+}
+ELASTIC_INLINE void lanes_at(const double* from, Block& to) {
+    __builtin_memcpy(&to, from, sizeof to);
+}
+ELASTIC_INLINE void put_lanes(const Block& from, double* to) {
+    __builtin_memcpy(to, &from, sizeof from);
+}
 ELASTIC_INLINE void vector_at(const double* from, const std::int32_t* place, Vector& to) {
     places_double(from, place, to.x, to.y, to.z);
 }
@@ -56,8 +65,8 @@ ELASTIC_INLINE Block exponential(const Block& x) {
 }
 
 // Adds one family's stress (times its volume) to s, and what it adds to the membrane's stiffness to `stiffer`.
-ELASTIC_INLINE void add_fibres(const Elastic& e, double sine, const Block& round_x, const Block& round_y, const Block* c,
-                               const Block& volume, Block* s, Block& stiffer) {
+ELASTIC_INLINE void add_fibres(const Elastic& e, double sine, const Block& round_x, const Block& round_y,
+                               const Block* c, const Block& volume, Block* s, Block& stiffer) {
     const Block along = round_x * e.fibre_cosine - round_y * sine, across = round_y * e.fibre_cosine + round_x * sine;
     const Block h11 = 0.5 + along, h22 = 0.5 - along;
     const Block strain = h11 * c[0] + (h22 * c[2] + 2.0 * (across * c[1])) - (1.0 + e.fibre_onset);
@@ -78,7 +87,8 @@ TARGET static void shell_forces(const Elastic& given, const double* x, double* s
                                 std::size_t begin, std::size_t end) {
     const Elastic e = given;  // a store to an array could, for all that the compiler knows, change the original
     for (std::size_t g = begin; g < end; ++g) {
-        const auto first = static_cast<std::size_t>(e.first_slot[g]), last = static_cast<std::size_t>(e.first_slot[g + 1]);
+        const auto first = static_cast<std::size_t>(e.first_slot[g]),
+                   last = static_cast<std::size_t>(e.first_slot[g + 1]);
         for (std::size_t half = 0; half < lanes; half += BLOCK) {
             const double* const constant = e.constant + g * elastic_constants * lanes + half;
             Vector origin, f1, f2, p;
@@ -134,7 +144,8 @@ TARGET static void shell_forces(const Elastic& given, const double* x, double* s
             d = d > elastic_least_det ? d : Block{} + elastic_least_det;
             const Block inverse = 1.0 / d, i11 = c[2] * inverse, i12 = -c[1] * inverse, i22 = c[0] * inverse;
             const Block thinner = exponential(-thinning * logarithm(d));
-            Block s[3] = {membrane * (1.0 - thinner * i11), -membrane * (thinner * i12), membrane * (1.0 - thinner * i22)};
+            Block s[3] = {membrane * (1.0 - thinner * i11), -membrane * (thinner * i12),
+                          membrane * (1.0 - thinner * i22)};
             // How much stiffer than at rest: a wall pressed together, and fibres, are.
             const Block at_rest = 2.0 * (membrane * (1.0 + 2.0 * thinning));
             Block stiffer = at_rest * (thinner > 1.0 ? thinner : Block{} + 1.0);
@@ -206,8 +217,8 @@ TARGET static void shell_forces(const Elastic& given, const double* x, double* s
 }
 
 // goal = x + force / stiffness, the force summed over the particle's slots.
-TARGET static void shell_goals(const ElasticSources& s, const double* slot_force, const double* x, const double* stiffness,
-                               double* goal, std::size_t begin, std::size_t end) {
+TARGET static void shell_goals(const ElasticSources& s, const double* slot_force, const double* x,
+                               const double* stiffness, double* goal, std::size_t begin, std::size_t end) {
     const std::int32_t *const all = s.from, *const first = s.first;
     for (std::size_t i = begin; i < end; ++i) {
         double fx = 0.0, fy = 0.0, fz = 0.0;

@@ -76,7 +76,7 @@ TARGET static inline void fused(const FloatPart& a, const FloatPart& b, FloatPar
 #undef SQRT
 #undef NAMED
 #undef ADD_PRODUCT
+#include "softbody/elastic.inl"
 #include "softbody/gather.inl"
 #include "softbody/gather_grid.inl"
 #include "softbody/particles.inl"
-#include "softbody/elastic.inl"

@@ -38,13 +38,13 @@ struct SoftBodyScratch {
     std::vector<double> compliance;    ///< (n) c_i, mm/mN, written by predict; 0 for fixed particles
     std::vector<double>
         stiffness_scale;  ///< (n) factor on k_i, > 0, or empty for 1: effects of the material write it before predict
-    std::vector<double> support;  ///< (n) foundation, mN/mm, in place of the model's, or empty: effects write it
-    Fibres fibres;        ///< of the elastic form: an effect of the material writes them before predict
+    std::vector<double> support;      ///< (n) foundation, mN/mm, in place of the model's, or empty: effects write it
+    Fibres fibres;                    ///< of the elastic form: an effect of the material writes them before predict
     AlignedVector<double> transform;  ///< fits in double: (lanes x 12) of the clusters
     AlignedVector<std::int32_t> grid,
         grid_transform;                ///< fits in float: (n x 3 + 1) x, (lanes x 12); kernel.h, grid_mm
     std::vector<std::uint8_t> far;     ///< fits in float: (groups) whether sums of transforms may have gone round
-    AlignedVector<double> law;  ///< elastic form: (groups x 4 x 8) as ask_law wrote it, or empty
+    AlignedVector<double> law;         ///< elastic form: (groups x 4 x 8) as ask_law wrote it, or empty
     std::vector<double> hold;          ///< elastic form: (n) k_i now, written by predict
     AlignedVector<double> slot_force;  ///< elastic form: (slots x 3 x 8) of the triangles on their particles
     std::vector<Vec3> momentum;        ///< linear and angular of each free body when the substep began, two each

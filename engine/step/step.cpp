@@ -6,8 +6,8 @@
 #include "step/actuation.h"
 #include "step/measure.h"
 #include "step/parts.h"
-#include "step/wall_slip.h"
 #include "step/substep.h"
+#include "step/wall_slip.h"
 
 namespace cathlab {
 namespace {

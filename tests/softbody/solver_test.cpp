@@ -152,8 +152,7 @@ TEST(Solver, SinglePrecisionFindsTheGoalsOfDoubleMetresFromTheOriginToo) {
         const std::vector<Vec3> in_double = goals_elsewhere(Precision::double_, turn, way),
                                 in_float = goals_elsewhere(Precision::float_, turn, way);
         double worst = 0.0;
-        for (std::size_t i = 0; i < in_double.size(); ++i)
-            worst = std::max(worst, (in_double[i] - in_float[i]).norm());
+        for (std::size_t i = 0; i < in_double.size(); ++i) worst = std::max(worst, (in_double[i] - in_float[i]).norm());
         EXPECT_LT(worst, 1e-5) << "mm, " << way.transpose();
     }
 }
