@@ -84,7 +84,7 @@ void validate(const AnatomySpec& spec) {
         regions.add(where, r.name);
         in_range(where, "wall_thickness_mm", r.wall_thickness_mm, 0.1, 5.0);
         in_range(where, "force_limit_n", r.force_limit_n, 0.01, 100.0);
-        in_range(where, "particle_spacing_mm", r.particle_spacing_mm, 0.2, 10.0);
+        in_range(where, "particle_spacing_mm", r.spacing_mm(spec.particle_spacing_mm), 0.2, 10.0);
     }
     if (spec.vessels.empty()) throw UserError("the anatomy '" + spec.name + "' has no vessel");
     Names vessels("vessel");
@@ -195,7 +195,7 @@ std::uint64_t content_hash(const AnatomySpec& spec) {
     h(spec.name);
     h.size(spec.regions.size());
     for (const RegionSpec& r : spec.regions) {
-        h(r.name), h(r.wall_thickness_mm), h(r.force_limit_n), h(r.particle_spacing_mm);
+        h(r.name), h(r.wall_thickness_mm), h(r.force_limit_n), h(r.spacing_mm(spec.particle_spacing_mm));
     }
     h.size(spec.vessels.size());
     for (const VesselSpec& v : spec.vessels) {

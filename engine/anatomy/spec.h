@@ -19,9 +19,12 @@ struct RegionSpec {
     std::string name;
     double wall_thickness_mm = 1.0;  ///< [0.1, 5]
     double force_limit_n = 0.8;      ///< [0.01, 100]
-    double particle_spacing_mm =
-        2.1;  ///< [0.2, 10]; lowered by the builder where fewer than eight would go round a lumen
+    double particle_spacing_mm = 0.0;  ///< 0 = the anatomy's, or [0.2, 10]
     SourcePlace where;
+
+    double spacing_mm(double of_the_anatomy) const {
+        return particle_spacing_mm > 0.0 ? particle_spacing_mm : of_the_anatomy;
+    }
 };
 
 /// One tube.  The centre-line is a centripetal Catmull-Rom curve through the points; radii go linearly with arc length
@@ -104,6 +107,9 @@ struct AnatomySpec {
     std::vector<EntrySpec> entries;
     std::vector<LandmarkSpec> landmarks;
     MeshingSpec meshing;
+    /// Wanted distance of wall particles where a region names none, [0.2, 10]; lowered by the builder where fewer than
+    /// eight would go round a lumen.
+    double particle_spacing_mm = 2.1;
     bool torso = true;  ///< put bones, lungs and a body outline round it (needs the adult's frame)
 };
 

@@ -227,7 +227,7 @@ void place_names(const AnatomySpec& spec, const TreeLayout& layout, const GraphP
     const auto& vessels = layout.tree->vessels();
     for (std::size_t r = 0; r < spec.regions.size(); ++r) {
         const RegionSpec& s = spec.regions[r];
-        Region region{s.name, s.wall_thickness_mm, s.force_limit_n, s.particle_spacing_mm};
+        Region region{s.name, s.wall_thickness_mm, s.force_limit_n, s.spacing_mm(spec.particle_spacing_mm)};
         for (std::size_t v = 0; v < vessels.size();
              ++v) {  // eight particles round: spacing <= 2 pi r / 8, some to spare
             if (layout.region[v] == static_cast<Index>(r))

@@ -49,6 +49,7 @@ AnatomyModel get_anatomy(const SceneSpec& spec, const BuildOptions& options, con
     }
     AnatomySpec anatomy = load_anatomy(spec.anatomy.file);
     anatomy.stenoses.insert(anatomy.stenoses.end(), spec.anatomy.stenoses.begin(), spec.anatomy.stenoses.end());
+    anatomy.particle_spacing_mm = spec.wall.particle_spacing_mm;
     if (spec.anatomy.face_count > 0) anatomy.meshing.face_count = spec.anatomy.face_count;
     return load_or_build(anatomy, options.cache_folder, workers, progress);
 }
@@ -141,6 +142,10 @@ bool passive_catheter(const SceneSpec& spec) {
 void add_wire(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) {
     WireSpec wire = load_wire(spec.wire.device);
     wire.friction = spec.wall.friction.value_or(wire.friction);
+    if (const double longest = spec.wire.link_length_mm; longest > 0.0) {
+        wire.link_length_mm = std::min(wire.link_length_mm, longest);
+        for (WireSection& section : wire.sections) section.link_length_mm = std::min(section.link_length_mm, longest);
+    }
     const EntrySite& entry = find_entry(anatomy, spec.wire);
     for (const WireSection& section : wire.sections) check_width(entry, 0.5 * section.diameter_mm, spec.wire);
     const std::vector<Vec3> way = way_in(anatomy, entry);

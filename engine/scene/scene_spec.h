@@ -79,6 +79,7 @@ struct SceneDevice {
     std::string entry = "right_femoral";
     double insertion_mm = 50.0;     ///< beyond the sheath's mouth at the start
     std::string follow = "vessel";  ///< catheter alone: "vessel" or "wire"
+    double link_length_mm = 0.0;    ///< wire alone: longest rigid link; 0 = as its file says
     SourcePlace where;
 };
 

@@ -63,7 +63,7 @@ Table<SceneWall> wall_table() {
             .place(&SceneWallRegion::where);
     return Table<SceneWall>("the soft wall: particles in overlapping clusters")
         .number("particle_spacing_mm", &SceneWall::particle_spacing_mm, "mm", {0.2, 10},
-                "widest distance between particles; regions and narrow vessels may ask for less")
+                "distance between particles; the anatomy's regions and narrow vessels may ask for less")
         .number("cluster_spacing_mm", &SceneWall::cluster_spacing_mm, "mm", {0.5, 50}, "distance between clusters, s_c")
         .number("cluster_radius_mm", &SceneWall::cluster_radius_mm, "mm", {0.5, 100},
                 "reach of a cluster along the wall, r_c")
@@ -110,7 +110,11 @@ Table<SceneDevice> device_table(const std::string& doc, bool catheter) {
         .text("entry", &SceneDevice::entry, "name of the entry site")
         .number("insertion_mm", &SceneDevice::insertion_mm, "mm", {0, 2000}, "beyond the sheath's mouth at the start")
         .place(&SceneDevice::where);
-    if (catheter) table.choice("follow", &SceneDevice::follow, {"vessel", "wire"}, "what its shaft runs along");
+    if (catheter)
+        table.choice("follow", &SceneDevice::follow, {"vessel", "wire"}, "what its shaft runs along");
+    else
+        table.number("link_length_mm", &SceneDevice::link_length_mm, "mm", {0, 50},
+                     "longest rigid link, where the device's file has longer ones; 0 = as it says");
     return table;
 }
 
