@@ -11,6 +11,9 @@
 namespace cathlab {
 namespace {
 
+// So far behind its mouth a guiding catheter gives way to the ostium's motion.
+constexpr double guide_bends_mm = 60.0;
+
 void describe_solids(const AnatomyModel& anatomy, FrameDescription& frame) {
     if (frame.solids_revision != 0) return;
     frame.solids_revision = 1;
@@ -75,13 +78,24 @@ std::uint8_t material_index(FrameDevice& device, const std::string& name) {
     return index;
 }
 
-FrameDevice describe_wire(const Rod& wire) {
+// A guided wire is drawn on through the guiding catheter, whose own wall is not drawn.
+FrameDevice describe_wire(const Rod& wire, const GuidePath* guide) {
     FrameDevice out;
     out.name = wire_entity;
     out.points = wire.polyline();
+    if (guide) out.points.resize(wire.free_link_count() + 1);
     for (std::size_t i = 0; i + 1 < out.points.size(); ++i) {
         out.radius_mm.push_back(wire.link_radius(i));
         out.material_of.push_back(material_index(out, wire.material(i)));
+    }
+    if (!guide) return out;
+    const Vec3 moved = wire.sheath().mouth.position - guide->points.front();
+    double behind = 0.0;
+    for (std::size_t i = 0; i < guide->points.size(); ++i) {
+        if (i > 0) behind += (guide->points[i] - guide->points[i - 1]).norm();
+        out.points.push_back(guide->points[i] + std::max(0.0, 1.0 - behind / guide_bends_mm) * moved);
+        out.radius_mm.push_back(out.radius_mm.back());
+        out.material_of.push_back(out.material_of.back());
     }
     return out;
 }
@@ -188,7 +202,7 @@ void describe_frame(World& world, const SceneSpec& scene, const Channels& channe
     describe_lumen(parts, memory, frame.lumen);
     frame.devices.clear();
     if (parts.catheter) frame.devices.push_back(describe_catheter(*parts.catheter, parts.catheter_route->shape));
-    if (parts.wire) frame.devices.push_back(describe_wire(*parts.wire));
+    if (parts.wire) frame.devices.push_back(describe_wire(*parts.wire, parts.world->first<GuidePath>()));
     describe_camera(parts, frame);
     frame.show_inner_view = frame.inner_camera.has_value() && !change.alone;
     describe_outer_camera(change, frame);

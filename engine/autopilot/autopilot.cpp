@@ -9,6 +9,7 @@
 #include "core/deterministic_math.h"
 #include "core/random.h"
 #include "core/units.h"
+#include "scene/entry.h"
 #include "step/parts.h"
 
 namespace cathlab {
@@ -41,14 +42,6 @@ Index goal_node(const AnatomyModel& anatomy, const TaskSpec& task) {
     return 0;
 }
 
-Index entry_node(const AnatomyModel& anatomy, const SceneSpec& scene, const TaskSpec& task) {
-    const std::string& name = task.device == "wire" ? scene.wire.entry : scene.catheter.entry;
-    for (const EntrySite& entry : anatomy.entries)
-        if (entry.name == name) return entry.node;
-    CATHLAB_CHECK(false, "a device's entry is looked up before");
-    return 0;
-}
-
 }  // namespace
 
 Autopilot::Autopilot(const World& world, const SceneSpec& scene, const TaskSpec& task, const Skill& skill,
@@ -59,7 +52,9 @@ Autopilot::Autopilot(const World& world, const SceneSpec& scene, const TaskSpec&
       dt_(scene.step.dt_s),
       goal_(world, task),
       anatomy_(*world.first<Shared<AnatomyModel>>()),
-      way_(anatomy_->centreline, entry_node(*anatomy_, scene, task), goal_node(*anatomy_, task)) {}
+      way_(anatomy_->centreline,
+           find_way_in(*anatomy_, task.device == "wire" ? scene.wire : scene.catheter, true).entry.node,
+           goal_node(*anatomy_, task)) {}
 
 double Autopilot::noisy(double value, std::uint64_t what) const {
     const auto tick = static_cast<std::uint64_t>(static_cast<double>(step_) * dt_ / tremor_s);

@@ -104,6 +104,13 @@ Rod::~Rod() = default;
 Rod::Rod(Rod&&) noexcept = default;
 Rod& Rod::operator=(Rod&&) noexcept = default;
 
+void Rod::move_mouth(const Pose& mouth) {
+    CATHLAB_CHECK(finite(mouth.position) && std::isfinite(mouth.orientation.squaredNorm()),
+                  "the sheath's pose must be finite");
+    impl_->sheath.mouth = mouth;
+    impl_->sheath.mouth.orientation.normalize();
+}
+
 double Rod::command(double advance_mm, double rotate_rad) {
     Impl& m = *impl_;
     if (m.sleeve) {

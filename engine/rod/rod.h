@@ -46,6 +46,10 @@ public:
     Rod(Rod&&) noexcept;
     Rod& operator=(Rod&&) noexcept;
 
+    /// Puts the sheath's mouth elsewhere for the substep that follows, before command(); what it holds goes along.
+    /// No part of the archive: whoever moves it says where it is in every substep.
+    void move_mouth(const Pose& mouth);
+
     /// Moves what the sheath holds, inward positive and right-handed about the mouth's z, over the substep that
     /// follows. An advance beyond max_travel_mm(), a turn beyond 0.5 rad and an insertion out of range are clamped;
     /// what is not finite counts as zero.  Returns the advance that was taken, mm.

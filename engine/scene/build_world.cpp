@@ -15,11 +15,13 @@
 #include "rod/rod.h"
 #include "scene/anatomy_file.h"
 #include "scene/device_file.h"
+#include "scene/entry.h"
 #include "scene/flow_root.h"
 #include "scene/vessel_direction.h"
 #include "scene/wall_parameters.h"
 #include "softbody/binding.h"
 #include "softbody/solver.h"
+#include "softbody/wall_place.h"
 #include "softbody/wall_sample.h"
 #include "world/step_settings.h"
 
@@ -73,68 +75,6 @@ Shared<SoftBodyModel> build_wall(const SceneSpec& spec, AnatomyModel& anatomy) {
     return std::make_shared<const SoftBodyModel>(build_soft_body(sample, parameters, is_fixed));
 }
 
-const EntrySite& find_entry(const AnatomyModel& anatomy, const SceneDevice& device) {
-    std::vector<std::string> names;
-    for (const EntrySite& entry : anatomy.entries) {
-        if (entry.name == device.entry) return entry;
-        names.push_back(entry.name);
-    }
-    throw UserError(device.where, "the anatomy has no entry site '" + device.entry + "'; it has " + comma_list(names) +
-                                      did_you_mean(device.entry, names));
-}
-
-void check_width(const EntrySite& entry, double radius_mm, const SceneDevice& device) {
-    if (radius_mm >= entry.radius_mm)
-        throw UserError(device.where, "the device is " + std::to_string(2.0 * radius_mm) +
-                                          " mm wide and the vessel at '" + entry.name + "' only " +
-                                          std::to_string(2.0 * entry.radius_mm) + " mm");
-}
-
-// The way in from an entry: towards the heart where there is one, otherwise to the end that is farthest.
-std::vector<Vec3> way_in(const AnatomyModel& anatomy, const EntrySite& entry) {
-    const CentrelineGraph& graph = anatomy.centreline;
-    std::vector<Index> path;
-    if (anatomy.annulus) {
-        path = graph.path(entry.node, graph.nearest(anatomy.annulus->pose.position));
-    } else {
-        double longest = 0.0;
-        const auto neighbours = graph.adjacency();
-        for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-            if (neighbours[i].size() != 1) continue;
-            std::vector<Index> candidate = graph.path(entry.node, static_cast<Index>(i));
-            const double length = graph.length(candidate);
-            if (length > longest) {
-                longest = length;
-                path = std::move(candidate);
-            }
-        }
-    }
-    std::vector<Vec3> points{entry.pose.position};
-    const Vec3 inward = entry.pose.orientation * Vec3::UnitZ();
-    for (const Index node : path) {
-        const Vec3& p = graph.nodes[static_cast<std::size_t>(node)].position;
-        if ((p - entry.pose.position).dot(inward) > 1.0 || points.size() > 1) points.push_back(p);
-    }
-    return points;
-}
-
-// A device begins within the vessels: laid out further than its way goes, it would stand in the tissue behind them.
-void check_insertion(const EntrySite& entry, const std::vector<Vec3>& way, const SceneDevice& device) {
-    double length = 0.0;
-    for (std::size_t i = 1; i < way.size(); ++i) length += (way[i] - way[i - 1]).norm();
-    if (device.insertion_mm > length)
-        throw UserError(device.where, "insertion_mm: found " + std::to_string(device.insertion_mm) +
-                                          ", but the way in from '" + entry.name + "' is " + std::to_string(length) +
-                                          " mm long");
-}
-
-// ... and no further in than the device is long.
-void check_reach(double length_mm, const SceneDevice& device) {
-    if (device.insertion_mm >= length_mm)
-        throw UserError(device.where, "insertion_mm: found " + std::to_string(device.insertion_mm) + ", but '" +
-                                          device.device + "' is only " + std::to_string(length_mm) + " mm long");
-}
-
 bool passive_catheter(const SceneSpec& spec) {
     return spec.catheter.enabled && device_kind(spec.catheter.device) == "passive_catheter";
 }
@@ -146,15 +86,21 @@ void add_wire(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) 
         wire.link_length_mm = std::min(wire.link_length_mm, longest);
         for (WireSection& section : wire.sections) section.link_length_mm = std::min(section.link_length_mm, longest);
     }
-    const EntrySite& entry = find_entry(anatomy, spec.wire);
-    for (const WireSection& section : wire.sections) check_width(entry, 0.5 * section.diameter_mm, spec.wire);
-    const std::vector<Vec3> way = way_in(anatomy, entry);
-    check_insertion(entry, way, spec.wire);
-    check_reach(wire.length_mm, spec.wire);
+    const WayIn way = find_way_in(anatomy, spec.wire, true);
+    const EntrySite& entry = way.entry;
+    for (const WireSection& section : wire.sections) check_width(way, 0.5 * section.diameter_mm, spec.wire);
+    check_insertion(way, wire.length_mm, spec.wire);
     const SheathPose sheath{entry.pose, 60.0};
     const Entity e = world.create(wire_entity);
+    if (way.guided() && spec.catheter.enabled)
+        throw UserError(spec.catheter.where, "the wire comes out of a guiding catheter at '" + entry.name +
+                                                 "': a scene with one has no other catheter");
+    if (way.guided()) {
+        world.add(e, wall_place(**world.first<Shared<SoftBodyModel>>(), entry.pose));
+        world.add(e, GuidePath{way.guide});
+    }
     if (!passive_catheter(spec)) {
-        world.add(e, Rod(wire, sheath, spec.wire.insertion_mm, way));
+        world.add(e, Rod(wire, sheath, spec.wire.insertion_mm, way.points));
         return;
     }
     SleeveSpec sleeve = load_sleeve(spec.catheter.device);
@@ -163,21 +109,19 @@ void add_wire(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) 
         throw UserError(spec.catheter.where, "entry: found '" + spec.catheter.entry +
                                                  "'; a passive catheter runs over the wire, which enters at '" +
                                                  spec.wire.entry + "'");
-    for (const WireSection& section : sleeve.sections) check_width(entry, 0.5 * section.diameter_mm, spec.catheter);
-    check_insertion(entry, way, spec.catheter);
-    check_reach(sleeve.length_mm, spec.catheter);
-    world.add(e, Rod(wire, sleeve, sheath, spec.wire.insertion_mm, spec.catheter.insertion_mm, way));
+    for (const WireSection& section : sleeve.sections) check_width(way, 0.5 * section.diameter_mm, spec.catheter);
+    check_insertion(way, sleeve.length_mm, spec.catheter);
+    world.add(e, Rod(wire, sleeve, sheath, spec.wire.insertion_mm, spec.catheter.insertion_mm, way.points));
 }
 
 void add_catheter(World& world, const SceneSpec& spec, const AnatomyModel& anatomy) {
     CatheterSpec catheter = load_catheter(spec.catheter.device);
     catheter.friction = spec.wall.friction.value_or(catheter.friction);
-    const EntrySite& entry = find_entry(anatomy, spec.catheter);
-    check_width(entry, catheter.radius_mm(), spec.catheter);
-    check_insertion(entry, way_in(anatomy, entry), spec.catheter);
-    check_reach(catheter.length_mm, spec.catheter);
+    const WayIn way = find_way_in(anatomy, spec.catheter, false);
+    check_width(way, catheter.radius_mm(), spec.catheter);
+    check_insertion(way, catheter.length_mm, spec.catheter);
     const Entity e = world.create(catheter_entity);
-    world.add(e, CatheterMount{entry.pose, entry.node, spec.catheter.follow == "wire"});
+    world.add(e, CatheterMount{way.entry.pose, way.entry.node, spec.catheter.follow == "wire"});
     world.add(e, initial_state(catheter, spec.catheter.insertion_mm));
     world.add(e, std::move(catheter));
 }

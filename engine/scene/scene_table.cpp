@@ -107,7 +107,8 @@ Table<SceneDevice> device_table(const std::string& doc, bool catheter) {
     Table<SceneDevice> table(doc);
     table.boolean("enabled", &SceneDevice::enabled, "the device is there")
         .path("device", &SceneDevice::device, "its device file", "assets/devices")
-        .text("entry", &SceneDevice::entry, "name of the entry site")
+        .text("entry", &SceneDevice::entry,
+              "name of the entry site; for a wire, of a landmark too: out of a guiding catheter engaged there")
         .number("insertion_mm", &SceneDevice::insertion_mm, "mm", {0, 2000}, "beyond the sheath's mouth at the start")
         .place(&SceneDevice::where);
     if (catheter)

@@ -27,6 +27,7 @@ Parts find_parts(World& world) {
 
     p.wire = world.first<Rod>();
     p.wire_drive = world.first<WireDrive>();
+    p.wire_mouth = world.first<WallPlace>();
     p.catheter = world.first<CatheterSpec>();
     p.mount = world.first<CatheterMount>();
     p.catheter_state = world.first<CatheterState>();

@@ -24,6 +24,7 @@
 #include "rod/rod.h"
 #include "softbody/binding.h"
 #include "softbody/solver.h"
+#include "softbody/wall_place.h"
 #include "step/force_bar.h"
 #include "step/step.h"
 #include "world/step_settings.h"
@@ -120,6 +121,7 @@ struct Parts {
 
     Rod* wire = nullptr;
     WireDrive* wire_drive = nullptr;
+    const WallPlace* wire_mouth = nullptr;  ///< where the wire's mouth goes along with the wall
     const CatheterSpec* catheter = nullptr;
     const CatheterMount* mount = nullptr;
     CatheterState* catheter_state = nullptr;

@@ -45,6 +45,7 @@ constexpr double pushed_out_mm = 0.2;
 constexpr double surface_reach_mm = 4.5;
 
 void command_wire(Parts& p, const Input& input, double h, StepSums& sums) {
+    if (p.wire_mouth) p.wire->move_mouth(place_now(*p.wire_mouth, *p.wall, p.wall_state->x));
     const bool selected = input.device < 0.5;
     const double wanted = selected ? input.advance * h : 0.0;
     const double fraction = wanted == 0.0 ? 1.0 : drive_fraction(*p.wire, *p.wire_drive, *p.settings, wanted);

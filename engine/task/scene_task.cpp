@@ -1,19 +1,10 @@
 #include "task/scene_task.h"
 
-#include <algorithm>
-#include <numeric>
-
 #include "core/errors.h"
 #include "softbody/solver.h"
 #include "world/step_settings.h"
 
 namespace cathlab {
-
-namespace {
-
-constexpr std::size_t particles_of_goal = 12;
-
-}  // namespace
 
 std::optional<TaskSpec> task_of(const SceneSpec& scene) {
     const SceneTask& task = scene.task;
@@ -40,23 +31,11 @@ std::optional<TaskSpec> task_of(const SceneSpec& scene) {
 }
 
 GoalPoint::GoalPoint(const World& world, const TaskSpec& task)
-    : rest_(goal_position(task, **world.first<Shared<AnatomyModel>>())) {
-    const std::vector<Vec3>& wall = (*world.first<Shared<SoftBodyModel>>())->rest;
-    std::vector<Index> order(wall.size());
-    std::iota(order.begin(), order.end(), Index{0});
-    const auto count = static_cast<std::ptrdiff_t>(std::min(particles_of_goal, order.size()));
-    const auto away = [&](Index i) { return (wall[static_cast<std::size_t>(i)] - rest_).squaredNorm(); };
-    std::partial_sort(order.begin(), order.begin() + count, order.end(),
-                      [&](Index a, Index b) { return away(a) != away(b) ? away(a) < away(b) : a < b; });
-    particles_.assign(order.begin(), order.begin() + count);
-}
+    : place_(wall_place(**world.first<Shared<SoftBodyModel>>(),
+                        {goal_position(task, **world.first<Shared<AnatomyModel>>()), Quat::Identity()})) {}
 
 Vec3 GoalPoint::now(const World& world) const {
-    const std::vector<Vec3>& rest = (*world.first<Shared<SoftBodyModel>>())->rest;
-    const std::vector<Vec3>& x = world.first<SoftBodyState>()->x;
-    Vec3 moved = Vec3::Zero();
-    for (const Index i : particles_) moved += x[static_cast<std::size_t>(i)] - rest[static_cast<std::size_t>(i)];
-    return particles_.empty() ? rest_ : Vec3(rest_ + moved / static_cast<double>(particles_.size()));
+    return place_now(place_, **world.first<Shared<SoftBodyModel>>(), world.first<SoftBodyState>()->x).position;
 }
 
 }  // namespace cathlab

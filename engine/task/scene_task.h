@@ -2,9 +2,9 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "scene/scene_spec.h"
+#include "softbody/wall_place.h"
 #include "task/task.h"
 #include "world/world.h"
 
@@ -25,8 +25,7 @@ public:
     Vec3 now(const World& world) const;
 
 private:
-    Vec3 rest_;
-    std::vector<Index> particles_;
+    WallPlace place_;
 };
 
 }  // namespace cathlab

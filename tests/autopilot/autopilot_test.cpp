@@ -48,6 +48,14 @@ TEST(Autopilot, AnExpertBringsTheWireIntoTheAbdominalAortaUnderTheLimitAndAgainT
     EXPECT_EQ(one.seconds, two.seconds);
 }
 
+TEST(Autopilot, AnExpertBringsTheWireFromEitherCoronaryOstiumToItsTarget) {
+    for (const char* task : {"d.toml", "e.toml"}) {
+        const Outcome out = fly(task, "expert", 120.0);
+        EXPECT_TRUE(out.reached) << task;
+        EXPECT_LT(out.bar, 1.0) << task;
+    }
+}
+
 TEST(Tasks, EveryOneOfTheProjectIsValidAndItsGoalCanBeReachedByVessels) {
     const std::string root = CATHLAB_SOURCE_DIR, folder = root + "/scenes/tasks";
     for (const std::string& name : names_in_folder(folder, ".toml")) {

@@ -83,7 +83,8 @@ void operate_at_random(const SceneSpec& spec, const SceneModels& models, std::ui
         imbalance = std::max(imbalance, run.channels.momentum_residual);
         touched = std::max({touched, run.channels.wire_force_mn, run.channels.catheter_force_mn});
         if ((k + 1) % steps_a_line == 0 && k + 1 < steps)
-            std::cout << "seed " << seed << ", " << run.world->time_s << " s: deepest so far " << deepest << " mm"
+            std::cout << "seed " << seed << ", " << run.world->time_s << " s: deepest so far " << deepest << " mm "
+                      << where << "; deeper than allowed in " << too_deep << " steps, outside in " << outside
                       << std::endl;
     }
     EXPECT_LT(in_coronaries, coronary_limit_mm) << where;
