@@ -346,9 +346,15 @@ std::vector<double> ContactSet::arcs_at_the_wall(Index device) const {
     return arcs;
 }
 
+bool ContactSet::presses_hard(std::size_t r, std::span<const DeviceSample> samples_now, double force_mn,
+                              double front_mn) const {
+    if (rows_[r].multiplier > (samples_now[at(wall_[r].sample)].walls > 0 ? front_mn : force_mn)) return true;
+    return rows_[r].multiplier > 0.0 && rows_[r].gap < -deep_mm;
+}
+
 bool ContactSet::presses(std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const {
     for (std::size_t r = 0; r < rows_.size(); ++r)
-        if (rows_[r].multiplier > (samples_now[at(wall_[r].sample)].walls > 0 ? front_mn : force_mn)) return true;
+        if (presses_hard(r, samples_now, force_mn, front_mn)) return true;
     return false;
 }
 
@@ -357,9 +363,8 @@ double ContactSet::true_depth(const LumenSurfaceModel& model, const LumenSurface
     double depth = 0.0;
     Index last = -1;
     for (std::size_t r = 0; r < rows_.size(); ++r) {
-        if (wall_[r].sample == last) continue;
+        if (wall_[r].sample == last || !presses_hard(r, samples_now, force_mn, front_mn)) continue;
         const DeviceSample& s = samples_now[at(wall_[r].sample)];
-        if (rows_[r].multiplier <= (s.walls > 0 ? front_mn : force_mn)) continue;
         last = wall_[r].sample;
         const SurfacePoint nearest =
             closest(model, surface, s.position, settings_.recovery_mm, memory_.triangle[at(last)]);

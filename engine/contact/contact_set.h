@@ -109,8 +109,8 @@ public:
     double staleness() const;
 
     /// How deep, mm, >= 0, the samples that carry more than `force_mn`, those of a front end (DeviceSample::walls) more
-    /// than `front_mn`, are in the surface as it is now.  Rows hold the wall's facets as they lay at detect; under a
-    /// tip that presses they turn.  Where it is large, detect again.
+    /// than `front_mn`, or that lie deep by a row of their own, are in the surface as it is now.  Rows hold the wall's
+    /// facets as they lay at detect; under a tip that presses they turn.  Where it is large, detect again.
     double true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
                       std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const;
     /// Whether any sample carries so much.
@@ -159,6 +159,9 @@ public:
     friend void visit(Archive& archive, ContactSet& set);
 
 private:
+    bool presses_hard(std::size_t row, std::span<const DeviceSample> samples_now, double force_mn,
+                      double front_mn) const;
+
     /// What a sample leaves behind for the next substep, sorted by (device, arc).
     struct Memory {
         std::vector<std::int64_t> device, first_row;  ///< first_row has one entry more
