@@ -141,7 +141,11 @@ private:
         if (finished_) return;
         finished_ = true;
         if (done_ > 0) writer_.hash(done_, session_.world().state_hash());
-        if (!watch_.empty()) writer_.file("metrics.json", metrics_json(watch_.metrics()));
+        if (!watch_.empty()) {
+            writer_.file("metrics.json", metrics_json(watch_.metrics()));
+            writer_.file("regions.csv", watch_.forces().regions_csv());
+            writer_.file("force-map.csv", force_map_csv(watch_.forces().unrolled()));
+        }
         if (watch_.task()) writer_.file("result.json", watch_.result_json(who_));
         std::exception_ptr film_failure;  // a film that cannot be finished must not leave the logs open
         try {

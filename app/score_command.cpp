@@ -13,6 +13,7 @@
 #include "record/sums.h"
 #include "recorded_scene.h"
 #include "run_verifier.h"
+#include "scene/toml_document.h"
 #include "session.h"
 #include "task_watch.h"
 
@@ -56,6 +57,12 @@ void compare_metrics(const std::string& folder, const Metrics& now, std::vector<
     }
 }
 
+/// What the inputs say of a file that a run may have; a run of the trainer has none of the forces' tables.
+void compare_file(const std::string& path, const std::string& now, std::vector<std::string>& differences) {
+    if (!std::filesystem::exists(path)) return;
+    if (read_text_file(path, 1U << 24U) != now) differences.push_back(path + " is not what the inputs say");
+}
+
 /// The recorded inputs once more, with every channel and hash compared on the way.
 Scored score_run(const std::string& folder, int threads, const AppContext& context) {
     Scored out;
@@ -84,6 +91,8 @@ Scored score_run(const std::string& folder, int threads, const AppContext& conte
     else if (!verifier.channels_agree())
         out.differences.push_back(folder + ": " + verifier.channel_difference());
     out.metrics = watch.metrics();
+    compare_file(folder + "/regions.csv", watch.forces().regions_csv(), out.differences);
+    compare_file(folder + "/force-map.csv", force_map_csv(watch.forces().unrolled()), out.differences);
     out.task = watch.task();
     out.reached = watch.reached();
     out.score = watch.score();

@@ -16,6 +16,7 @@
 #include "progress.h"
 #include "record/run_files.h"
 #include "scene/load_scene.h"
+#include "scene/toml_document.h"
 #include "session.h"
 #include "study/study_report.h"
 #include "task/scene_task.h"
@@ -155,6 +156,23 @@ void rehearse(const StudyOptions& options, AppContext& context) {
     if (finished < open.size()) context.exit_code = 1;
 }
 
+/// Of the runs that count: the last trial of each task.
+std::vector<GroupForces> forces_of(const std::string& study, const Protocol& protocol,
+                                   const std::vector<RunEntry>& runs) {
+    std::vector<GroupForces> out;
+    for (const std::string& group : protocol.groups) {
+        GroupForces sum{group, 0, {}};
+        for (const RunEntry& run : runs) {
+            const std::string path = study + "/" + run.folder + "/force-map.csv";
+            if (run.group != group || run.trial != protocol.trials || !fs::exists(path)) continue;
+            sum.forces.add(parse_force_map(read_text_file(path, 1U << 24U), path));
+            ++sum.runs;
+        }
+        out.push_back(std::move(sum));
+    }
+    return out;
+}
+
 void report(const StudyOptions& options, const AppContext& context) {
     const Protocol protocol = read_study(options.folder);
     const auto participants = read_participants(options.folder, protocol);
@@ -164,6 +182,7 @@ void report(const StudyOptions& options, const AppContext& context) {
     for (RunEntry& run : index.list())
         if (run.trial > 0) runs.push_back(std::move(run));
     Page page = study_page(protocol, participants, runs);
+    page.maps = force_maps(forces_of(options.folder, protocol, runs));
     for (const std::string& sentence : left_out) page.paragraphs.push_back("Left out: " + sentence);
     page.command = context.command_line;
     const std::string out = options.out.empty() ? options.folder : options.out;

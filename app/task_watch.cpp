@@ -2,16 +2,21 @@
 
 #include <nlohmann/json.hpp>
 
+#include "anatomy/model.h"
+#include "world/step_settings.h"
+
 namespace cathlab {
 
-TaskWatch::TaskWatch(const World& world, std::optional<TaskSpec> task) : task_(std::move(task)) {
+TaskWatch::TaskWatch(const World& world, std::optional<TaskSpec> task) : task_(std::move(task)), forces_(world) {
     if (!task_) return;
     goal_.emplace(world, *task_);
     tracker_.emplace(*task_);
+    metrics_.set_task(*world.first<Shared<AnatomyModel>>(), task_->device, task_->landmark);
 }
 
 void TaskWatch::add(const World& world, const Channels& channels, double dt) {
     metrics_.add(channels, dt);
+    forces_.add(world, dt);
     if (tracker_) tracker_->add(channels, goal_->now(world), dt);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/channels.h"
+#include "task/force_map.h"
 #include "task/metrics.h"
 #include "task/scene_task.h"
 #include "world/world.h"
@@ -28,6 +29,7 @@ public:
     bool reached() const;
     const std::optional<TaskSpec>& task() const { return task_; }
     Metrics metrics() const { return metrics_.result(); }
+    const ForceMap& forces() const { return forces_; }
     bool empty() const { return metrics_.empty(); }
     /// 0 where the goal was not reached.
     double score() const;
@@ -39,6 +41,7 @@ private:
     std::optional<GoalPoint> goal_;
     std::optional<GoalTracker> tracker_;
     MetricsAccumulator metrics_;
+    ForceMap forces_;
 };
 
 }  // namespace cathlab

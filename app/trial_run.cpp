@@ -46,6 +46,8 @@ bool run_trial(const std::string& study, const Trial& trial, const SceneSpec& sc
     }
     writer.hash(step, session.world().state_hash());
     writer.file("metrics.json", metrics_json(watch.metrics()));
+    writer.file("regions.csv", watch.forces().regions_csv());
+    writer.file("force-map.csv", force_map_csv(watch.forces().unrolled()));
     writer.file("result.json", watch.result_json({"autopilot", trial.group}));
     writer.file("trial.json", trial_json(trial));
     writer.finish(step, true, std::chrono::duration<double>(Clock::now() - begin).count(), "");

@@ -30,6 +30,8 @@ Simulation::Simulation(SimulationOptions options, const SceneModels& models, con
     if (options_.task) {
         goal_point_.emplace(session_.world(), *options_.task);
         tracker_.emplace(*options_.task);
+        metrics_.set_task(*session_.world().first<Shared<AnatomyModel>>(), options_.task->device,
+                          options_.task->landmark);
         goal_.present = true;
         goal_.radius_mm = options_.task->radius_mm;
         goal_.hold_s = options_.task->hold_s;

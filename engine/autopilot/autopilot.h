@@ -7,11 +7,11 @@
 #include <memory>
 
 #include "autopilot/skill.h"
-#include "autopilot/way.h"
 #include "core/channels.h"
 #include "core/input.h"
 #include "scene/scene_spec.h"
 #include "task/scene_task.h"
+#include "task/way.h"
 #include "world/world.h"
 
 namespace cathlab {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "autopilot/way.h"
 #include "catheter/shape.h"
+#include "task/way.h"
 
 namespace cathlab {
 

@@ -43,6 +43,7 @@ std::string html_page(const Page& page) {
     for (const std::string& paragraph : page.paragraphs) out += "<p>" + xml_escaped(paragraph) + "</p>\n";
     for (const PageTable& table : page.tables) out += table_text(table);
     for (const Plot& plot : page.plots) out += svg_plot(plot);
+    for (const HeatMap& map : page.maps) out += svg_heat_map(map);
     for (const PageTable& table : page.details) out += table_text(table);
     if (!page.command.empty()) out += "<p>Made by</p>\n<pre>" + xml_escaped(page.command) + "</pre>\n";
     return out + "</body>\n</html>\n";

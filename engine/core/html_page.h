@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/heat_map.h"
 #include "core/svg_plot.h"
 
 namespace cathlab {
@@ -19,7 +20,8 @@ struct Page {
     std::vector<std::string> paragraphs;  ///< below the title
     std::vector<PageTable> tables;        ///< above the plots: what was found; small ones stand side by side
     std::vector<Plot> plots;
-    std::vector<PageTable> details;  ///< below the plots
+    std::vector<HeatMap> maps;       ///< below the plots
+    std::vector<PageTable> details;  ///< below these
     std::string command;             ///< what made the page
 };
 

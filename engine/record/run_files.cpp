@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array run_file_names{"manifest.json", "inputs.jsonl", "trace.csv",  "events.jsonl", "hashes.csv",
                                     "metrics.json",  "poster.png",   "fluoro.mp4", "fluoro.avi",   "labels.json",
-                                    "report.html",   "result.json",  "sums.json"};
+                                    "report.html",   "result.json",  "sums.json",  "regions.csv",  "force-map.csv"};
 
 std::string reason() {
     return std::strerror(errno);

@@ -148,6 +148,35 @@ PageTable trials_table(const std::vector<RunEntry>& runs) {
 
 }  // namespace
 
+std::vector<HeatMap> force_maps(const std::vector<GroupForces>& groups) {
+    std::size_t columns = 0;
+    double most = 0.0;
+    for (const GroupForces& g : groups) {
+        columns = std::max(columns, g.forces.impulse_ns.size() / UnrolledForces::sectors);
+        for (const double v : g.forces.impulse_ns) most = std::max(most, v / std::max(1, g.runs));
+    }
+    std::vector<HeatMap> out;
+    if (most <= 0.0) return out;
+    for (const GroupForces& g : groups) {
+        HeatMap map;
+        map.title = "Where the wall was pressed: " + g.group + ", mean of " + std::to_string(g.runs) + " runs";
+        map.x_label = "along the centre-line from the heart, mm";
+        map.y_label = "about it, deg";
+        map.value_label = "N s a run";
+        map.x_step = UnrolledForces::along_mm;
+        map.y_step = 360.0 / UnrolledForces::sectors;
+        map.columns = static_cast<int>(columns);
+        map.rows = UnrolledForces::sectors;
+        map.most = most;
+        map.values.assign(columns * UnrolledForces::sectors, 0.0);
+        for (std::size_t i = 0; i < g.forces.impulse_ns.size(); ++i)
+            map.values[(i % UnrolledForces::sectors) * columns + i / UnrolledForces::sectors] =
+                g.forces.impulse_ns[i] / std::max(1, g.runs);
+        out.push_back(std::move(map));
+    }
+    return out;
+}
+
 Page study_page(const Protocol& protocol, const std::vector<Participant>& participants,
                 const std::vector<RunEntry>& runs) {
     Page page;

@@ -7,8 +7,19 @@
 #include "core/html_page.h"
 #include "study/protocol.h"
 #include "study/run_index.h"
+#include "task/force_map.h"
 
 namespace cathlab {
+
+/// What the runs of a group that count did to the unrolled aorta, in sum.
+struct GroupForces {
+    std::string group;
+    int runs = 0;
+    UnrolledForces forces;
+};
+
+/// One map a group, impulse a run, all to one scale; none where no run left a force map.
+std::vector<HeatMap> force_maps(const std::vector<GroupForces>& groups);
 
 /// Time and collision by task and group as in [li2025] table 2 (mean, SD, Kruskal and Wallis), then medians, quartiles,
 /// bootstrap intervals, Mann-Whitney with Holm's correction, Cliff's delta, learning curves and every trial.  The last

@@ -80,6 +80,12 @@ bool DeviceTrack::add(const Vec3& tip, double advance_mm, double rotation_deg, d
     return moved;
 }
 
+void MetricsAccumulator::set_task(std::shared_ptr<const AnatomyModel> anatomy, const std::string& device,
+                                  const std::string& landmark) {
+    detours_ = Detours(std::move(anatomy), landmark);
+    about_wire_ = device == "wire";
+}
+
 void MetricsAccumulator::add(const Channels& c, double dt) {
     CATHLAB_CHECK(dt > 0.0, "a step must take time");
     CATHLAB_CHECK(dt_ == 0.0 || dt == dt_, "all steps of a run must be of one length");
@@ -98,6 +104,9 @@ void MetricsAccumulator::add(const Channels& c, double dt) {
     } else if (first_motion_ >= 0.0) {
         idle_ += dt;
     }
+    detours_.add(about_wire_ ? Vec3(c.wire_tip_x_mm, c.wire_tip_y_mm, c.wire_tip_z_mm)
+                             : Vec3(c.catheter_tip_x_mm, c.catheter_tip_y_mm, c.catheter_tip_z_mm),
+                 dt);
     force_n_.push_back((c.wire_force_mn + c.catheter_force_mn) / units::newton);
     contacts_.add(c.force_bar_n, dt);
     bar_max_ = std::max(bar_max_, c.force_bar);
@@ -125,6 +134,9 @@ Metrics MetricsAccumulator::result() const {
     m.duration_s = duration_;
     m.wire_path_mm = wire_.path_mm();
     m.catheter_path_mm = catheter_.path_mm();
+    const double way = detours_.way_mm();
+    m.path_ratio = way > 0.0 ? (about_wire_ ? m.wire_path_mm : m.catheter_path_mm) / way : 0.0;
+    m.wrong_branches = detours_.wrong_branches();
     m.wire_rotation_total_deg = wire_.rotation_deg();
     m.catheter_rotation_total_deg = catheter_.rotation_deg();
     m.wire_reversals = wire_.reversals();

@@ -7,6 +7,7 @@
 
 #include "core/channels.h"
 #include "core/types.h"
+#include "task/detours.h"
 
 namespace cathlab {
 
@@ -69,6 +70,9 @@ private:
 
 class MetricsAccumulator {
 public:
+    /// What the run is about: whose tip ("wire" or "catheter") is to go to which landmark.  Before the first step.
+    void set_task(std::shared_ptr<const AnatomyModel> anatomy, const std::string& device, const std::string& landmark);
+
     /// One step's channels; dt in s, above 0 and the same for all steps of a run (CATHLAB_CHECK).
     void add(const Channels& channels, double dt);
     Metrics result() const;
@@ -80,6 +84,8 @@ private:
     double first_motion_ = -1.0;
     std::size_t first_moving_step_ = 0, last_moving_step_ = 0;
     DeviceTrack wire_, catheter_;
+    Detours detours_;
+    bool about_wire_ = true;
     ContactEvents contacts_;
     std::vector<double> force_n_;
     Channels last_;

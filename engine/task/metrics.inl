@@ -6,6 +6,8 @@ CATHLAB_METRIC(play_time_s,               "s",      "from the first motion to th
 CATHLAB_METRIC(idle_time_s,               "s",      "part of play_time_s in which no device moves: under 0.5 mm/s and under 1 deg/s at every drive")
 CATHLAB_METRIC(wire_path_mm,              "mm",     "length of the path of the guidewire's tip")
 CATHLAB_METRIC(catheter_path_mm,          "mm",     "length of the path of the catheter's tip")
+CATHLAB_METRIC(path_ratio,                "1",      "path of the tip that the task is about over the centre-line's length from where it began to the goal; 0 without a task")
+CATHLAB_METRIC(wrong_branches,            "1",      "times that this tip went into a vessel off that way, counted again once it was back on it for 1 s; 0 without a task")
 CATHLAB_METRIC(wire_rotation_total_deg,   "deg",    "sum of |rotation| of the guidewire at the sheath")
 CATHLAB_METRIC(catheter_rotation_total_deg, "deg",  "sum of |rotation| of the catheter's base")
 CATHLAB_METRIC(wire_reversals,            "1",      "turns of the guidewire's direction of travel, each after at least 1 mm")

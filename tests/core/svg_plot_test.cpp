@@ -128,6 +128,7 @@ TEST(HtmlPage, HoldsEverythingAndAsksForNothing) {
                     .paragraphs = {"p & q"},
                     .tables = {{"t", {"", "a"}, {{"row", "1"}}}},
                     .plots = {line_plot({1.0, 2.0})},
+                    .maps = {},
                     .details = {{"d", {"", ""}, {{"more", "2"}}}},
                     .command = "cathlab 'a b'"};
     const std::string html = html_page(page);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "core/check.h"
 
@@ -126,4 +128,15 @@ TEST(Metrics, NothingRecordedIsAllZeroAndAChangedStepIsAMistake) {
     EXPECT_THROW(metrics.add({}, 2.0 * dt), std::logic_error);
     EXPECT_EQ(find_metric("contacts")->unit, "1");
     EXPECT_EQ(find_metric("no such"), nullptr);
+}
+
+TEST(Metrics, EachStandsInTheDocumentWithItsUnit) {
+    std::ifstream in(std::string(CATHLAB_SOURCE_DIR) + "/docs/metrics.md");
+    const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    for (const MetricInfo& metric : metric_table()) {
+        const auto name = text.find("`" + std::string(metric.name) + "`");
+        ASSERT_NE(name, std::string::npos) << metric.name << " is missing in docs/metrics.md";
+        const std::string row = text.substr(name, text.find('\n', name) - name);
+        EXPECT_NE(row.find(std::string(metric.unit)), std::string::npos) << metric.name << ": " << row;
+    }
 }

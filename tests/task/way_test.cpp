@@ -1,13 +1,10 @@
-// Where a tip is on its way, and which bends bring a catheter's tip to a place.
-#include "autopilot/way.h"
+// Where a tip is on its way, and how often it leaves it.
+#include "task/way.h"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "autopilot/skill.h"
-#include "autopilot/steering.h"
 #include "core/errors.h"
+#include "task/detours.h"
 
 namespace cathlab {
 namespace {
@@ -50,36 +47,44 @@ TEST(Way, WithoutAVesselThereIsASentence) {
     EXPECT_THROW(Way(graph, 0, static_cast<Index>(graph.nodes.size()) - 1), UserError);
 }
 
-TEST(Steering, FindsTheBendsThatBringTheTipBackToWhereAnotherShapeHadIt) {
-    const CentrelineGraph graph = fork();
-    const Way way(graph, 0, 50);
-    const CatheterSpec spec;
-    std::vector<Vec3> nodes;
-    for (const CentrelineNode& node : graph.nodes)
-        if (node.region == 0) nodes.push_back(node.position);
-    const Rail rail = build_rail(Pose{}, nodes, {});
-    CatheterState wanted = initial_state(spec, 90.0);
-    wanted.bend_rad = {0.4, 0.9};
-    wanted.direction_rad = {0.5, -1.0};
-    const Vec3 tip = shape(spec, wanted, rail).tip.position;
-    const CatheterState straight = initial_state(spec, 90.0);
-    const Bends found = steer(spec, straight, rail, 90.0, way, {tip, 1e6}, bends_of(straight));
-    CatheterState reached = straight;
-    for (std::size_t k = 0; k < 2; ++k) {
-        reached.bend_rad[k] = found.wanted[k].norm();
-        reached.direction_rad[k] = std::atan2(found.wanted[k].y(), found.wanted[k].x());
-    }
-    EXPECT_LT((shape(spec, reached, rail).tip.position - tip).norm(), 1.0);
+/// The fork as an anatomy whose goal lies at the far end of the straight vessel.
+std::shared_ptr<const AnatomyModel> fork_anatomy() {
+    auto anatomy = std::make_shared<AnatomyModel>();
+    anatomy->centreline = fork();
+    Landmark end;
+    end.name = "end";
+    end.pose.position = Vec3(0, 0, 100);
+    end.node = 50;
+    anatomy->landmarks = {end};
+    return anatomy;
 }
 
-TEST(Skill, IsFoundByNameOrTheNearestIsNamed) {
-    EXPECT_LT(find_skill("expert").reaction_s, find_skill("novice").reaction_s);
-    try {
-        find_skill("exprt");
-        FAIL();
-    } catch (const UserError& error) {
-        EXPECT_NE(std::string(error.what()).find("'expert'"), std::string::npos);
-    }
+TEST(Detours, CountABranchOnceUntilTheTipHasBeenBackForASecond) {
+    Detours detours(fork_anatomy(), "end");
+    constexpr double dt = 0.02;
+    const auto stay = [&](const Vec3& tip, double seconds) {
+        for (double t = 0.0; t < seconds - 1e-9; t += dt) detours.add(tip, dt);
+    };
+    stay({0, 0, 0}, 0.1);
+    EXPECT_DOUBLE_EQ(detours.way_mm(), 100.0);
+    stay({30, 0, 50}, 0.5);
+    EXPECT_EQ(detours.wrong_branches(), 1);
+    stay({0, 0, 48}, 0.5);  // back, but not for long
+    stay({30, 0, 50}, 0.5);
+    EXPECT_EQ(detours.wrong_branches(), 1);
+    stay({0, 0, 48}, 1.5);
+    stay({30, 0, 50}, 0.5);
+    EXPECT_EQ(detours.wrong_branches(), 2);
+}
+
+TEST(Detours, WithoutAWayThereIsNone) {
+    Detours detours(fork_anatomy(), "nowhere");
+    detours.add({30, 0, 50}, 0.02);
+    EXPECT_EQ(detours.way_mm(), 0.0);
+    EXPECT_EQ(detours.wrong_branches(), 0);
+    Detours none;
+    none.add({0, 0, 0}, 0.02);
+    EXPECT_EQ(none.way_mm(), 0.0);
 }
 
 }  // namespace

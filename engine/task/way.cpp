@@ -1,4 +1,4 @@
-#include "autopilot/way.h"
+#include "task/way.h"
 
 #include <algorithm>
 #include <cmath>
