@@ -26,6 +26,8 @@ constexpr double look_every_s = 0.1;                // between two looks at the 
 constexpr double least_share = 0.15;                // of the speed, beside the goal
 constexpr double hold_share = 0.3;                  // of the goal's radius: nearer is good enough to stand still
 constexpr double leave_share = 0.6;                 // having stood still, it moves again beyond this
+constexpr double in_vain_s = 3.0;                   // standing longer than the hold takes: the goal swings away
+constexpr double closer = 0.7;                      // then it has to be so much nearer
 constexpr double reach_mm = 25.0;                   // from here on the catheter aims at the goal itself
 constexpr double travelling = 0.05, aiming = 20.0;  // weights of the tip's goal (steering.h)
 constexpr double most_table_mm = 1000.0;
@@ -97,7 +99,12 @@ void Autopilot::drive(const Vec3& tip, const Vec3& goal, double bar, Input& inpu
         farthest_mm_ = place.arc_mm;
         return;
     }
-    arrived_ = to_goal < (arrived_ ? leave_share : hold_share) * task_.radius_mm;
+    arrived_ = to_goal < (arrived_ ? leave_share : hold_share) * near_enough_ * task_.radius_mm;
+    stood_s_ = arrived_ ? stood_s_ + dt_ : 0.0;
+    if (stood_s_ > task_.hold_s + in_vain_s) {
+        near_enough_ *= closer;
+        stood_s_ = 0.0;
+    }
     if (arrived_) return;
     if (place.astray) {
         back_mm_ = fork_mm * (1.0 + 0.5 * (attempts_++ % 4));

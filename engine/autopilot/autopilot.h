@@ -50,6 +50,7 @@ private:
     double farthest_mm_ = 0.0, stuck_s_ = 0.0, back_mm_ = 0.0;
     int attempts_ = 0;
     bool arrived_ = false, near_ = false;
+    double stood_s_ = 0.0, near_enough_ = 1.0;
     Vec2 proximal_ = Vec2::Zero(), distal_ = Vec2::Zero();
 };
 
