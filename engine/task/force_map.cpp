@@ -78,7 +78,7 @@ void UnrolledForces::add(const UnrolledForces& other) {
 std::string force_map_csv(const UnrolledForces& forces) {
     std::string out = "along_mm,angle_deg,impulse_ns\n";
     for (std::size_t i = 0; i < forces.impulse_ns.size(); ++i) {
-        if (forces.impulse_ns[i] <= 0.0) continue;
+        if (forces.impulse_ns[i] <= 0.0 && i + 1 < forces.impulse_ns.size()) continue;  // the last one tells the length
         const auto row = static_cast<double>(i / UnrolledForces::sectors);
         const auto sector = static_cast<double>(i % UnrolledForces::sectors);
         out += exact((row + 0.5) * UnrolledForces::along_mm) + "," + exact((sector + 0.5) * sector_deg) + "," +

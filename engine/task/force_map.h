@@ -19,7 +19,7 @@ struct UnrolledForces {
     void add(const UnrolledForces& other);
 };
 
-/// force-map.csv: along_mm, angle_deg (middles of the cells), impulse_ns; cells without any are left out.
+/// force-map.csv: along_mm, angle_deg (middles of the cells), impulse_ns; cells without any are left out but the last.
 std::string force_map_csv(const UnrolledForces& forces);
 /// Throws UserError that names `path` and the line where the text is no such table.
 UnrolledForces parse_force_map(std::string_view text, const std::string& path);
