@@ -1,6 +1,8 @@
 #include "core/deterministic_math.h"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace cathlab::det {
@@ -76,11 +78,18 @@ double exp(double x) {
     if (x < -745.0) return 0.0;
     constexpr double ln2_high = 6.93147180369123816490e-01;  // low 32 bits zero
     constexpr double ln2_low = 1.90821492927058770002e-10;
-    const double k = std::floor(x / 0.693147180559945309417 + 0.5);
+    const double k = std::floor(x * (1.0 / 0.693147180559945309417) + 0.5);
     const double r = (x - k * ln2_high) - k * ln2_low;
-    double sum = 1.0;
-    for (int n = 14; n >= 1; --n) sum = 1.0 + sum * r / static_cast<double>(n);
-    return std::ldexp(sum, static_cast<int>(k));
+    // 1 + r + r^2 (1/2! + r/3! + ...), |r| <= ln(2)/2: the first term left out is below 1e-18.  Terms are summed in
+    // pairs and pairs of pairs, since a processor waits for each link of a chain.
+    const double r2 = r * r, r4 = r2 * r2;
+    const double low = (1.0 / 2 + r * (1.0 / 6)) + r2 * (1.0 / 24 + r * (1.0 / 120));
+    const double middle = (1.0 / 720 + r * (1.0 / 5040)) + r2 * (1.0 / 40320 + r * (1.0 / 362880));
+    const double high = (1.0 / 3628800 + r * (1.0 / 39916800)) + r2 * (1.0 / 479001600 + r * (1.0 / 6227020800));
+    const double sum = 1.0 + (r + r2 * (low + r4 * (middle + r4 * high)));
+    const int exponent = static_cast<int>(k);
+    if (exponent < -1021 || exponent > 1022) return std::ldexp(sum, exponent);
+    return sum * std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52U);
 }
 
 double log(double x) {
@@ -88,15 +97,24 @@ double log(double x) {
     if (x == 0.0) return -inf;
     if (x == inf) return inf;
     int exponent = 0;
-    double m = std::frexp(x, &exponent);  // m in [0.5, 1)
+    double m = 0.0;  // in [0.5, 1)
+    if (x >= std::numeric_limits<double>::min()) {
+        const auto bits = std::bit_cast<std::uint64_t>(x);
+        exponent = static_cast<int>(bits >> 52U) - 1022;
+        m = std::bit_cast<double>((bits & 0x000fffffffffffffULL) | (1022ULL << 52U));
+    } else {
+        m = std::frexp(x, &exponent);
+    }
     if (m < 0.70710678118654752440) {
         m *= 2.0;
         --exponent;
     }
     const double s = (m - 1.0) / (m + 1.0);
-    const double s2 = s * s;
-    double sum = 0.0;
-    for (int n = 23; n >= 3; n -= 2) sum = (sum + 1.0 / static_cast<double>(n)) * s2;
+    const double s2 = s * s, s4 = s2 * s2, s8 = s4 * s4;
+    const double low = (1.0 / 3 + s2 * (1.0 / 5)) + s4 * (1.0 / 7 + s2 * (1.0 / 9));
+    const double middle = (1.0 / 11 + s2 * (1.0 / 13)) + s4 * (1.0 / 15 + s2 * (1.0 / 17));
+    const double high = (1.0 / 19 + s2 * (1.0 / 21)) + s4 * (1.0 / 23);
+    const double sum = s2 * (low + s8 * (middle + s8 * high));
     const double k = static_cast<double>(exponent);
     return k * 6.93147180369123816490e-01 + (2.0 * s + (2.0 * s * sum + k * 1.90821492927058770002e-10));
 }

@@ -51,8 +51,12 @@ std::vector<double> beats_among(const std::vector<double>& triggers) {
     const std::size_t n = triggers.size();
     std::vector<double> cost(n, 0.0);
     std::vector<std::size_t> from(n, n);
+    // Beats are missed before the first that is kept and after the last, too: a pause is no reason to begin after it.
+    const auto beyond = [&](std::size_t a, std::size_t b) {
+        return left_out * static_cast<double>(b - a) + missed * std::floor((triggers[b] - triggers[a]) / rhythm);
+    };
     for (std::size_t j = 0; j < n; ++j) {
-        cost[j] = left_out * static_cast<double>(j);
+        cost[j] = beyond(0, j);
         for (std::size_t i = j > farthest ? j - farthest : 0; i < j; ++i) {
             const double d = (triggers[j] - triggers[i]) / rhythm, beats = std::max(1.0, std::round(d));
             const double off = (d - beats) / part;
@@ -66,9 +70,7 @@ std::vector<double> beats_among(const std::vector<double>& triggers) {
     }
     std::size_t last = n - 1;
     for (std::size_t j = 0; j < n; ++j)
-        if (cost[j] + left_out * static_cast<double>(n - 1 - j) <
-            cost[last] + left_out * static_cast<double>(n - 1 - last))
-            last = j;
+        if (cost[j] + beyond(j, n - 1) < cost[last] + beyond(last, n - 1)) last = j;
     std::vector<double> out;
     for (std::size_t j = last; j < n; j = from[j]) out.push_back(triggers[j]);
     std::reverse(out.begin(), out.end());

@@ -14,13 +14,13 @@ namespace {
 // Twice the distance at which the calibration compares: a marker stands several of them from the tool, and a model must
 // be solved hundreds of times.
 constexpr double spacing_mm = 4.5;
+constexpr double far_spacing_mm = 9.0;  // of the wall that nothing touches
 
 constexpr unsigned of_wall = hook_material | hook_membrane | hook_slip;
 
 class ContactRig final : public Rig {
 public:
-    ContactRig(const Dataset& data, const Split& split)
-        : Rig(data, split), wall_(push_rig_of(data.contact, spacing_mm)) {
+    ContactRig(const Dataset& data, const Split& split) : Rig(data, split) {
         hooks_ = of_wall | hook_measure;
         for (const char* axis : {"tool_x", "tool_y", "tool_z"}) {
             const std::vector<double>& values = data.find(axis)->values;
@@ -39,12 +39,20 @@ public:
             pushes_[run].ball_mm.emplace_back(data.find("tool_x")->values[i], data.find("tool_y")->values[i],
                                               data.find("tool_z")->values[i]);
         }
+        PushRig rig = push_rig_of(data.contact, spacing_mm);
+        rig.far_spacing_mm = far_spacing_mm;
         for (std::size_t run = 0; run < pushes_.size(); ++run) {
-            plain_.push_back(wall_.push(pushes_[run]));
+            rig.looked_at = pushes_[run].ball_mm;
+            rig.looked_at.push_back(pushes_[run].marker_mm);
+            walls_.emplace_back(rig);
+            pushes_[run].keep_wall = true;
+            plain_.push_back(walls_[run].push(pushes_[run]));
+            pushes_[run].keep_wall = false;
             if (!plain_.back().at_rest)
                 throw UserError(data.folder + ": the wall of run " + data.run_names[run] +
                                 " comes to no rest under its tool; there is no base model");
         }
+        for (std::size_t run = 0; run < pushes_.size(); ++run) pushes_[run].guess = plain_[run].wall_mm;
     }
 
     bool slow() const override { return true; }
@@ -92,7 +100,7 @@ private:
 
     PushResult pushed(RigEffects& effects, std::size_t run) const {
         effects.begin_run(static_cast<Index>(run));
-        effects.points(wall_.triangles());
+        effects.points(walls_[run].triangles());
         PushedLaw law;
         law.begin = [&](std::size_t k) { effects.next_row(data_.time_s[first_[run] + k]); };
         law.fibres = effects.fibres();
@@ -119,10 +127,10 @@ private:
                 effects.remember_slip(held(i, traction));
             };
         }
-        return wall_.push(pushes_[run], law);
+        return walls_[run].push(pushes_[run], law);
     }
 
-    PushedWall wall_;
+    std::vector<PushedWall> walls_;   // (runs) dense where each is pushed
     std::vector<Push> pushes_;        // (runs)
     std::vector<std::size_t> first_;  // (runs) row
     std::vector<PushResult> plain_;   // (runs) of the base model

@@ -185,7 +185,7 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
     model.train_cost = cost_of(model);
 }
 
-FittedModel Fitter::begin(std::span<const EffectInfo* const> declared) {
+FittedModel Fitter::begin(std::span<const EffectInfo* const> declared, const Workers& workers) {
     FittedModel model;
     model.base = rig_.start();
     model.residual = rig_.residual(model.base, {});
@@ -195,19 +195,21 @@ FittedModel Fitter::begin(std::span<const EffectInfo* const> declared) {
         constexpr int others = 11;
         constexpr double around = 0.06;  // of the ranges
         weigh_by(model);
-        FittedModel best = model;
-        refit(best, 15);
-        for (int k = 0; k < others; ++k) {
-            FittedModel other = model;
-            for (std::size_t j = 0; j < other.base.size(); ++j) {
-                const Bound& b = bounds[j];
-                const double shift = random_normal(1, RandomStream::optimiser, static_cast<std::uint64_t>(k), j);
-                other.base[j] = std::clamp(other.base[j] + around * shift * (b.upper - b.lower), b.lower, b.upper);
+        std::vector<FittedModel> tried(1 + others, model);
+        workers.for_ranges(tried.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                std::vector<double>& base = tried[k].base;
+                for (std::size_t j = 0; k > 0 && j < base.size(); ++j) {
+                    const Bound& b = bounds[j];
+                    const double shift = random_normal(1, RandomStream::optimiser, k - 1, j);
+                    base[j] = std::clamp(base[j] + around * shift * (b.upper - b.lower), b.lower, b.upper);
+                }
+                refit(tried[k], 15);
             }
-            refit(other, 15);
-            if (other.train_cost < best.train_cost) best = std::move(other);
-        }
-        model = std::move(best);
+        });
+        model = *std::min_element(tried.begin(), tried.end(), [](const FittedModel& a, const FittedModel& b) {
+            return a.train_cost < b.train_cost;
+        });
     }
     // The first fit sees large errors everywhere: its own scale, again and again until it stays.
     constexpr int rounds = 4;

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "core/parallel.h"
 #include "explain/judge.h"
 #include "explain/rig.h"
 
@@ -21,7 +22,7 @@ public:
     Fitter(const Rig& rig, double noise) : rig_(rig), noise_(noise) {}
 
     /// The base model with effects that are there without question.
-    FittedModel begin(std::span<const EffectInfo* const> declared);
+    FittedModel begin(std::span<const EffectInfo* const> declared, const Workers& workers);
 
     /// Errors are weighed anew by what a model leaves.
     void weigh_by(const FittedModel& model) { scale_ = loss_scale(model.residual, rig_.split(), noise_); }

@@ -29,6 +29,7 @@ public:
         }
         if (!(most > 0.0)) throw UserError(data.folder + ": no tendon was ever pulled; there is nothing to fit");
         for (const DataColumn* column : measured_) axis_.push_back(column->quantity.back() - 'x');
+        for (std::size_t k = 0; k < setup.segments.size(); ++k) add_sums(k);
         find_start();
     }
 
@@ -56,10 +57,15 @@ public:
                           base[n * numbers_a_segment + 2]);
         Actuation act;
         prepare(act, base);
+        std::vector<Vec2> first;  // (segments) gain times the direction of the first tendon
+        for (std::size_t k = 0; k < n; ++k) {
+            const double* number = &base[k * numbers_a_segment];
+            first.push_back(number[1] * Vec2(std::cos(number[0] * units::deg), std::sin(number[0] * units::deg)));
+        }
         for (std::size_t i = 0; i < data_.rows(); ++i) {
             if (i == 0 || data_.run[i] != data_.run[i - 1]) effects.begin_run(data_.run[i]);
             effects.next_row(data_.time_s[i]);
-            pull(act, base, i, actuated);
+            pull(act, base, first, i, actuated);
             if (actuated) effects.actuation(act);
             Pose end;
             for (std::size_t k = 0; k < n; ++k)
@@ -105,14 +111,14 @@ private:
 
     /// Ideal tendons: the bend whose arc takes in, in the least squares of all of them, what each pulls,
     /// b = 2 gain / (n r) sum_j l_j e_j, and the rest bend.
-    void pull(Actuation& act, std::span<const double> base, std::size_t row, bool whole) const {
+    void pull(Actuation& act, std::span<const double> base, std::span<const Vec2> first, std::size_t row,
+              bool whole) const {
         for (std::size_t k = 0; k < act.segments.size(); ++k) {
             ActuatedSegment& s = act.segments[k];
             const double* number = &base[k * numbers_a_segment];
-            const Vec2 sum = tendon_sum(k, row);
-            const double c = std::cos(number[0] * units::deg), t = std::sin(number[0] * units::deg);
+            const Vec2 &sum = sum_[k][row], &e = first[k];
             s.taper = 0.0;
-            s.bend_rad = number[1] * Vec2(c * sum.x() - t * sum.y(), t * sum.x() + c * sum.y()) +
+            s.bend_rad = Vec2(e.x() * sum.x() - e.y() * sum.y(), e.y() * sum.x() + e.x() * sum.y()) +
                          units::deg * Vec2(number[2], number[3]);
             if (!whole) continue;
             const auto& columns = data_.tendons.segments[k].columns;
@@ -121,16 +127,16 @@ private:
         }
     }
 
-    /// 2 / (n r) sum_j l_j e_j with the first tendon at angle 0.
-    Vec2 tendon_sum(std::size_t segment, std::size_t row) const {
+    /// sum_: 2 / (n r) sum_j l_j e_j with the first tendon at angle 0.
+    void add_sums(std::size_t segment) {
         const auto& columns = data_.tendons.segments[segment].columns;
         const auto n = static_cast<double>(columns.size());
-        Vec2 sum = Vec2::Zero();
+        auto& sums = sum_.emplace_back(data_.rows(), Vec2::Zero());
         for (std::size_t j = 0; j < columns.size(); ++j) {
             const double place = 2.0 * units::pi * static_cast<double>(j) / n;
-            sum += data_.columns[columns[j]].values[row] * Vec2(std::cos(place), std::sin(place));
+            const Vec2 e = 2.0 / (n * data_.tendons.tendon_radius_mm) * Vec2(std::cos(place), std::sin(place));
+            for (std::size_t i = 0; i < data_.rows(); ++i) sums[i] += data_.columns[columns[j]].values[i] * e;
         }
-        return 2.0 / (n * data_.tendons.tendon_radius_mm) * sum;
     }
 
     /// For small bends the tip goes sideways by the lever of each segment times its bend, which is linear: a regression
@@ -147,7 +153,7 @@ private:
             // tip = sum_k lever_k (a_k + i b_k) m_k + offset, as complex numbers
             Eigen::VectorXd for_x = Eigen::VectorXd::Zero(width), for_y = Eigen::VectorXd::Zero(width);
             for (std::size_t k = 0; k < n; ++k) {
-                const Vec2 m = tendon_sum(k, i);
+                const Vec2& m = sum_[k][i];
                 const auto at = static_cast<Eigen::Index>(2 * k);
                 for_x[at] = m.x();
                 for_x[at + 1] = -m.y();
@@ -189,6 +195,7 @@ private:
     std::vector<std::string> names_;
     std::vector<int> axis_;
     std::vector<double> start_;
+    std::vector<std::vector<Vec2>> sum_;  // (segments x rows) bends per gain
 };
 
 }  // namespace

@@ -82,7 +82,7 @@ public:
     Explanation run() {
         out_.cannot = rig_->notes();
         choose_candidates();
-        FittedModel base = fitter_.begin(declared_);
+        FittedModel base = fitter_.begin(declared_, workers_);
         out_.split = split_;
         out_.before = base.residual;
         out_.train_before = rms_of(base.residual, split_, 0);

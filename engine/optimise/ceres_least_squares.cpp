@@ -22,7 +22,16 @@ public:
         const double* u = parameters[0];
         for (std::size_t k = 0; k < free_.size(); ++k) x_[free_[k]] = value(k, u[k]);
         const std::span<double> out(residuals, problem_.residuals);
-        if (!call(out)) return false;
+        // A step that was taken is asked again, for its derivatives.
+        const std::vector<double> asked(u, u + free_.size());
+        if (asked == last_) {
+            std::copy(known_.begin(), known_.end(), residuals);
+        } else {
+            last_.clear();
+            if (!call(out)) return false;
+            known_.assign(out.begin(), out.end());
+            last_ = asked;
+        }
         if (jacobians == nullptr || jacobians[0] == nullptr) return true;
         for (std::size_t k = 0; k < free_.size(); ++k) {
             const double h = u[k] + step_ <= 1.0 ? step_ : -step_;  // inwards
@@ -51,6 +60,7 @@ private:
     const LeastSquaresProblem& problem_;
     std::vector<std::size_t> free_;
     mutable std::vector<double> x_, moved_;
+    mutable std::vector<double> last_, known_;  // asked last, and its residuals; empty = none
     double step_;
     mutable int evaluations_ = 0;
 };

@@ -20,6 +20,7 @@ namespace {
 
 constexpr int parts = 5;                  // a triangle's edge is cut into so many for the contact's points
 constexpr double mesh_per_spacing = 0.4;  // edges of the fine surface, of the particles' spacing
+constexpr double growth = 0.3;            // of the spacing, a mm away from where the wall is looked at
 constexpr double force_tolerance_mn = 1e-2;
 constexpr int marker_rounds = 50;
 
@@ -202,16 +203,25 @@ PushedWall::PushedWall(const PushRig& rig)
     for (std::size_t v = 0; v < normal.size(); ++v) middle.vertices[v] += 0.5 * rig.thickness_mm * normal[v];
     while (longest_edge(middle) > 1.5 * mesh_per_spacing * rig.particle_spacing_mm) middle = cut_in_four(middle);
 
-    const std::vector<double> spacing(middle.vertices.size(), rig.particle_spacing_mm);
+    const auto spacing_at = [&](const Vec3& p) {
+        if (rig.looked_at.empty()) return rig.particle_spacing_mm;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const Vec3& place : rig.looked_at) nearest = std::min(nearest, (p - place).norm());
+        const double beyond = std::max(0.0, nearest - ball_radius_mm_ - 2.0 * rig.particle_spacing_mm);
+        return std::min(rig.particle_spacing_mm + growth * beyond,
+                        std::max(rig.far_spacing_mm, rig.particle_spacing_mm));
+    };
+    std::vector<double> spacing;
+    for (const Vec3& v : middle.vertices) spacing.push_back(spacing_at(v));
     const WallSample sample = sample_wall(middle, std::vector<Index>(middle.vertices.size(), 0), spacing,
                                           std::vector<double>{rig.thickness_mm}, rig.seed);
     rest_ = sample.position;
     area_mm2_ = sample.area_mm2;
     thickness_mm_ = rig.thickness_mm;
     // Particles are sparse: those of the last row stand for the ring itself.
-    const double reach = 0.6 * rig.particle_spacing_mm;
     for (const Vec3& p : rest_)
         fixed_.push_back(std::any_of(rig.held.begin(), rig.held.end(), [&](const HeldDisc& disc) {
+            const double reach = 0.6 * spacing_at(p);
             const Vec3 off = p - disc.center;
             return std::fabs(off.dot(disc.normal)) <= disc.half_thickness_mm + reach &&
                    off.norm() <= disc.radius_mm + reach;
@@ -251,9 +261,11 @@ public:
         for (int round = 0;; ++round) {
             if (law_.membrane) ask(x);
             const std::vector<Vec3> before = x;
-            if (!shell_equilibrium(
-                    soft_, wall_.fixed_, load, x,
-                    {.force_tolerance_mn = force_tolerance_mn, .fibres = law_.fibres, .more_stress = more_}))
+            if (!shell_equilibrium(soft_, wall_.fixed_, load, x,
+                                   {.force_tolerance_mn = force_tolerance_mn,
+                                    .fibres = law_.fibres,
+                                    .more_stress = more_,
+                                    .factors = &factors_}))
                 return false;
             double moved = 0.0;
             for (std::size_t i = 0; i < x.size(); ++i) moved = std::max(moved, (x[i] - before[i]).norm());
@@ -352,6 +364,7 @@ private:
     const PushedWall& wall_;
     const PushedLaw& law_;
     ShellModel soft_;
+    ShellFactors factors_;
     double times_ = 1.0;
     std::vector<Vec3> more_, slipped_, pull_;
 };
@@ -381,13 +394,20 @@ PushResult PushedWall::push(const Push& push, const PushedLaw& law, const std::f
         if (known < k && !remembers) {
             out.marker_mm[k] = out.marker_mm[known];
             out.force_mn[k] = out.force_mn[known];
+            if (push.keep_wall) out.wall_mm.push_back(out.wall_mm[known]);
             continue;
+        }
+        if (k < push.guess.size()) {  // the way that the guess takes, from where the wall is
+            const std::vector<Vec3>& from = k > 0 ? push.guess[k - 1] : rest_;
+            for (std::size_t i = 0; i < x.size(); ++i)
+                if (!fixed_[i]) x[i] += push.guess[k][i] - from[i];
         }
         Vec3 total = Vec3::Zero();
         if ((go_on && !go_on()) || !sample.solve(push.ball_mm[k], x, total)) {
             out.at_rest = false;
             return out;
         }
+        if (push.keep_wall) out.wall_mm.push_back(x);
         out.marker_mm[k] = marker.place(x);
         out.force_mn[k] = total.dot(along);
     }

@@ -29,6 +29,10 @@ struct PushRig {
     double ball_radius_mm = 2.5;
     std::vector<HeldDisc> held;
     double particle_spacing_mm = 2.5;
+    /// Where the wall is looked at (the ball's places, the marker): away from them particles lie sparser, up to
+    /// far_spacing_mm.  Empty = as dense everywhere.
+    std::vector<Vec3> looked_at;
+    double far_spacing_mm = 0.0;
     std::uint64_t seed = 1;
 };
 
@@ -36,13 +40,17 @@ struct PushRig {
 struct Push {
     std::vector<Vec3> ball_mm;
     Vec3 marker_mm = Vec3::Zero();
+    bool keep_wall = false;  ///< PushResult::wall_mm is wanted
+    /// (samples) or empty: where the wall's particles are thought to be, each sample; the search begins beside them.
+    std::span<const std::vector<Vec3>> guess = {};
 };
 
 struct PushResult {
     std::vector<Vec3> marker_mm;   ///< (samples)
     std::vector<double> force_mn;  ///< (samples) of the ball on the wall, along the line from its first to its farthest
                                    ///< place
-    bool at_rest = true;           ///< false where a sample did not come to rest: it and those after it are NaN
+    std::vector<std::vector<Vec3>> wall_mm = {};  ///< (samples) all particles, where the push asks for them
+    bool at_rest = true;  ///< false where a sample did not come to rest: it and those after it are NaN
 };
 
 /// What effects make of the wall: asked sample by sample, in order.  A member that is empty changes nothing.

@@ -1,8 +1,8 @@
 #include "softbody/shell_statics.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/check.h"
 
@@ -12,8 +12,9 @@ namespace {
 
 constexpr double largest_move_mm = 2.0;  // of a particle in an iteration
 constexpr int most_halvings = 25;
-constexpr double worth_keeping = 0.3;  // factors that brought the largest force below this part of itself
-constexpr double sufficient = 1e-4;    // part of the decrease that the slope promises (Armijo)
+constexpr int most_halvings_of_old = 3;  // with factors of another x
+constexpr double worth_keeping = 0.3;    // factors that brought the largest force below this part of itself
+constexpr double sufficient = 1e-4;      // part of the decrease that the slope promises (Armijo)
 
 /// W = 1/2 S : (C - 1) of each triangle's volume.
 double stress_energy(const ShellModel& model, std::span<const Vec3> stress, std::span<const Vec3> x) {
@@ -76,10 +77,11 @@ bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fi
         return shell_energy(model, at, rest.fibres) + stress_energy(model, rest.more_stress, at) +
                load(at, on, load_stiffness);
     };
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+    ShellFactors own;
+    ShellFactors& factors = rest.factors != nullptr ? *rest.factors : own;
     Eigen::SparseMatrix<double> k(3 * free, 3 * free);
-    std::vector<int> pattern;  // rows of the matrix that the factorisation was laid out for
-    double energy = energy_at(x, force), before = 0.0;
+    bool fresh = false;  // the factors are of this x
+    double energy = energy_at(x, force), before = factors.usable ? std::numeric_limits<double>::infinity() : 0.0;
     for (int iteration = 0; iteration < rest.most_iterations; ++iteration) {
         add_shell_forces(model, x, force, rest.fibres);
         add_stress_forces(model, rest.more_stress, x, force);
@@ -94,7 +96,8 @@ bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fi
         if (largest < rest.force_tolerance_mn) return true;
 
         // Factors serve again while they bring the forces down: what they lack is mostly what they never had.
-        if (largest > worth_keeping * before) {
+        fresh = largest > worth_keeping * before || !factors.usable;
+        if (fresh) {
             entries.clear();
             const auto add = [&](Eigen::Index r, Eigen::Index c, double value) {
                 if (unknown(r) < 0 || unknown(c) < 0) return;
@@ -115,15 +118,16 @@ bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fi
                 entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1e-9 * diagonal);
             k.setFromTriplets(entries.begin(), entries.end());
             const std::span<const int> rows(k.innerIndexPtr(), static_cast<std::size_t>(k.nonZeros()));
-            if (!std::equal(rows.begin(), rows.end(), pattern.begin(), pattern.end())) {
-                solver.analyzePattern(k);
-                pattern.assign(rows.begin(), rows.end());
+            if (!std::equal(rows.begin(), rows.end(), factors.pattern.begin(), factors.pattern.end())) {
+                factors.solver.analyzePattern(k);
+                factors.pattern.assign(rows.begin(), rows.end());
             }
-            solver.factorize(k);
-            if (solver.info() != Eigen::Success) return false;
+            factors.solver.factorize(k);
+            factors.usable = factors.solver.info() == Eigen::Success;
+            if (!factors.usable) return false;
         }
         before = largest;
-        const Eigen::VectorXd step = solver.solve(residual);
+        const Eigen::VectorXd step = factors.solver.solve(residual);
         double far = 0.0;
         for (Eigen::Index i = 0; i < free; ++i) far = std::max(far, step.segment<3>(3 * i).norm());
         double share = std::min(1.0, largest_move_mm / std::max(far, 1e-300));
@@ -138,7 +142,13 @@ bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fi
                 energy = lower;
                 break;
             }
-            if (halving == most_halvings) return false;
+            if (halving == (fresh ? most_halvings : most_halvings_of_old)) {
+                if (fresh) return false;
+                factors.usable = false;  // factors of another x may lead nowhere: stay, and make them anew
+                tried = x;
+                energy = energy_at(x, force);
+                break;
+            }
             share *= 0.5;
         }
         x.swap(tried);

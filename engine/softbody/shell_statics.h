@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -21,12 +22,21 @@ using ShellLoad = std::function<double(std::span<const Vec3> x, std::span<Vec3> 
 /// A force that stays as it is, one a particle.
 ShellLoad dead_load(std::vector<Vec3> force);
 
+/// What one search for rest leaves to the next one of the same shell: while its factors bring the forces down, they
+/// are used again.
+struct ShellFactors {
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+    std::vector<int> pattern;  ///< rows of the matrix that the factorisation was laid out for
+    bool usable = false;
+};
+
 struct ShellRest {
     double force_tolerance_mn = 1e-4;  ///< no free particle feels more
     int most_iterations = 200;
     Fibres fibres = {};
     /// (triangles) second Piola-Kirchhoff stress that is added to the law's, kPa (11, 22, 12), or empty.
     std::span<const Vec3> more_stress = {};
+    ShellFactors* factors = nullptr;  ///< kept from call to call; null = made anew
 };
 
 /// Moves x to rest.  fixed: one a particle, 1 = held where x has it.  False where it does not come to rest.

@@ -20,7 +20,7 @@ std::unique_ptr<Folder> record_heart(const Recipe& r) {
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> uniform;
     const double size = r.strength;
-    const std::string& e = r.effect;
+    const auto acts = [&](const char* effect) { return acts_in(r, effect); };
     std::ostringstream csv, beats;
     csv.precision(9);
     csv << "run,t_s,displacement_mm\n";
@@ -33,7 +33,7 @@ std::unique_ptr<Folder> record_heart(const Recipe& r) {
         std::vector<double> before{usual};
         while (start.back() < length + 2.0) {
             double interval = usual;
-            if (e == "ectopic-beats") {
+            if (acts("ectopic-beats")) {
                 if (start.size() % 7 == 4) interval = 0.62 * usual;
                 if (start.size() % 7 == 5) interval = 1.38 * usual;
             }
@@ -50,21 +50,21 @@ std::unique_ptr<Folder> record_heart(const Recipe& r) {
             while (start[n + 1] <= t) ++n;
             double phase = (t - start[n]) / (start[n + 1] - start[n]);
             double factor = 1.0, more = 0.0;
-            if (e == "alternans") factor = 1.0 + (n % 2 == 0 ? 0.07 : -0.07) * size;
-            if (e == "amplitude-drift") factor = 1.0 - 0.35 * size * t / 60.0;
-            if (e == "ectopic-beats") factor = 1.0 + 0.5 * size * (before[n] / usual - 1.0);
-            if (e == "rate-variability") {
+            if (acts("alternans")) factor = 1.0 + (n % 2 == 0 ? 0.07 : -0.07) * size;
+            if (acts("amplitude-drift")) factor = 1.0 - 0.35 * size * t / 60.0;
+            if (acts("ectopic-beats")) factor = 1.0 + 0.5 * size * (before[n] / usual - 1.0);
+            if (acts("rate-variability")) {
                 const double period = 9.0;
                 shift = 0.02 * size * period / usual / (2.0 * pi) *
                         (std::cos(2.0 * pi * turn) - std::cos(2.0 * pi * (t / period + turn)));
                 phase += shift;
             }
-            if (e == "respiration") more = 0.9 * size * breath(t / 4.3 + turn);
-            if (e == "baseline-wander") more = 0.5 * size * std::sin(2.0 * pi * (t / 13.0 + turn));
-            if (e == "sensor-drift") more = 2.0 * size * t / 60.0;
-            if (e == "vibration") more = 0.4 * size * std::sin(2.0 * pi * t / 0.31);
-            if (e == "step" && run == 1 && 2 * i > rows) more = 1.0 * size;
-            if (e == "outliers" && uniform(random) < 0.03) more = 3.0 * size * normal(random);
+            if (acts("respiration")) more = 0.9 * size * breath(t / 4.3 + turn);
+            if (acts("baseline-wander")) more = 0.5 * size * std::sin(2.0 * pi * (t / 13.0 + turn));
+            if (acts("sensor-drift")) more = 2.0 * size * t / 60.0;
+            if (acts("vibration")) more = 0.4 * size * std::sin(2.0 * pi * t / 0.31);
+            if (acts("step") && run == 1 && 2 * i > rows) more = 1.0 * size;
+            if (acts("outliers") && uniform(random) < 0.03) more = 3.0 * size * normal(random);
             csv << run << "," << t << ","
                 << 10.0 * run + factor * beat(phase - std::floor(phase)) + more + noise * normal(random) << "\n";
         }
@@ -92,11 +92,12 @@ std::unique_ptr<Folder> record_tension(const Recipe& r) {
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> uniform;
     const double size = r.strength;
-    const std::string& e = r.effect;
+    const auto acts = [&](const char* effect) { return acts_in(r, effect); };
     const bool rubber = r.seed % 2 == 0;
+    const bool stiffens = acts("stiffening");
     const auto elastic = [&](double l) {
         const double line = rubber ? modulus / 3.0 * (l - 1.0 / (l * l)) : modulus * (l - 1.0);
-        return e == "stiffening" ? line + 2200.0 * size * std::pow(std::max(0.0, l - 1.0), 3) : line;
+        return stiffens ? line + 2200.0 * size * std::pow(std::max(0.0, l - 1.0), 3) : line;
     };
     const auto energy = [&](double l) {
         return rubber ? modulus / 6.0 * (l * l + 2.0 / l - 3.0) : 0.5 * modulus * (l - 1.0) * (l - 1.0);
@@ -116,7 +117,7 @@ std::unique_ptr<Folder> record_tension(const Recipe& r) {
             const double shape = place < 1.0 / 3 ? 3.0 * place : (place < 2.0 / 3 ? 1.0 : 3.0 * (1.0 - place));
             const double stress = top * (0.4 + 0.2 * std::min(number, 4)) * shape;
             double strain = 0.0;
-            if (e == "viscoelasticity") {
+            if (acts("viscoelasticity")) {
                 // A Maxwell element beside the elastic strip, taken implicitly.
                 const double g = 0.35 * size, theta = 1.5;
                 const auto force = [&](double l) {
@@ -126,7 +127,7 @@ std::unique_ptr<Folder> record_tension(const Recipe& r) {
                 over = (over + g * (elastic(l) - before)) / (1.0 + h / theta);
                 before = elastic(l);
                 strain = l - 1.0;
-            } else if (e == "softening") {
+            } else if (acts("softening")) {
                 const auto force = [&](double l) {
                     const double w = energy(l);
                     return elastic(l) *
@@ -138,22 +139,22 @@ std::unique_ptr<Folder> record_tension(const Recipe& r) {
             } else {
                 strain = stretch_of(elastic, stress) - 1.0;
             }
-            if (e == "slack") strain += 0.02 * size * std::min(1.0, stress / 0.5);
-            if (e == "creep") {
+            if (acts("slack")) strain += 0.02 * size * std::min(1.0, stress / 0.5);
+            if (acts("creep")) {
                 const double c = 0.04 * size;
                 if (strain > 1e-6) crept += h * c * strain / 0.5 * std::exp(-std::min(40.0, crept / (c * strain)));
                 strain += crept;
             }
-            if (e == "boundary-slip") {
+            if (acts("boundary-slip")) {
                 const double give = 1.2e-4 * size, hold = 15.0;  // strain a kPa, kPa
                 if (stress - gripped / give > hold) gripped = give * (stress - hold);
                 if (stress - gripped / give < -hold) gripped = give * (stress + hold);
                 strain += gripped;
             }
             if (i % fine != 0) continue;
-            if (e == "vibration") strain += 0.004 * size * std::sin(2.0 * pi * t / 0.83);
-            if (e == "step" && run == 2 && 2 * i > rows * fine) strain += 0.012 * size;
-            if (e == "outliers" && uniform(random) < 0.03) strain += 0.03 * size * normal(random);
+            if (acts("vibration")) strain += 0.004 * size * std::sin(2.0 * pi * t / 0.83);
+            if (acts("step") && run == 2 && 2 * i > rows * fine) strain += 0.012 * size;
+            if (acts("outliers") && uniform(random) < 0.03) strain += 0.03 * size * normal(random);
             csv << run << "," << t << "," << stress << "," << strain + noise * normal(random) << "\n";
         }
     }
@@ -185,6 +186,19 @@ const std::vector<std::string>& known_effects(const std::string& kind) {
     static const std::vector<std::string> tendons{
         "backlash",    "hysteresis",     "actuation-lag", "segment-coupling", "tendon-routing",
         "rest-memory", "sensor-latency", "sensor-drift",  "curvature-taper",  "field-distortion"};
+    if (kind == "wall-tension") return tension;
+    if (kind == "tendon-tip") return tendons;
+    return kind == "heart-motion" ? heart : catheter;
+}
+
+const std::vector<std::string>& effect_pairs(const std::string& kind) {
+    static const std::vector<std::string> heart{"respiration+alternans", "ectopic-beats+baseline-wander",
+                                                "amplitude-drift+rate-variability"};
+    static const std::vector<std::string> catheter{"backlash+respiration", "segment-coupling+sensor-drift",
+                                                   "hysteresis+registration", "gravity-sag+field-distortion"};
+    static const std::vector<std::string> tension{"viscoelasticity+slack", "softening+boundary-slip"};
+    static const std::vector<std::string> tendons{"backlash+sensor-drift", "segment-coupling+field-distortion",
+                                                  "rest-memory+curvature-taper"};
     if (kind == "wall-tension") return tension;
     if (kind == "tendon-tip") return tendons;
     return kind == "heart-motion" ? heart : catheter;

@@ -79,7 +79,7 @@ std::unique_ptr<Folder> record_catheter(const Recipe& r) {
     std::uniform_real_distribution<double> uniform;
     const V down{0.0, -1.0, 0.0};
     const double size = r.strength;
-    const std::string& e = r.effect;
+    const auto acts = [&](const char* effect) { return acts_in(r, effect); };
     std::ostringstream csv;
     csv.precision(9);
     csv << "run,t_s,insertion_mm,rotation_deg,proximal_bend_deg,distal_bend_deg,tip_x_mm,tip_y_mm,tip_z_mm\n";
@@ -92,19 +92,19 @@ std::unique_ptr<Folder> record_catheter(const Recipe& r) {
         Joint at{insertion(0.0), rotation(0.0), proximal(0.0), distal(0.0)}, lagged = at, memory = at, before = at;
         std::vector<std::array<double, 2>> plays(5, {at.proximal, at.distal});
         std::vector<V> seen;
-        const double turn = uniform(random), taper = e == "curvature-taper" ? -0.35 * size : 0.0;
+        const double turn = uniform(random), taper = acts("curvature-taper") ? -0.35 * size : 0.0;
         double twisted = rotation(0.0);
         for (int i = 0; i < rows * fine; ++i) {
             const double t = i * dt / fine;
             const Joint wanted{insertion(t), rotation(t), proximal(t), distal(t)};
             Joint q = wanted;
             double sag = 0.0;
-            if (e == "backlash") {
+            if (acts("backlash")) {
                 through_gap(5.0 * size, wanted.proximal, at.proximal);
                 through_gap(6.0 * size, wanted.distal, at.distal);
                 q.proximal = at.proximal;
                 q.distal = at.distal;
-            } else if (e == "hysteresis") {
+            } else if (acts("hysteresis")) {
                 double sum[2] = {0.0, 0.0};
                 for (std::size_t k = 0; k < plays.size(); ++k) {
                     const double gap = 2.0 * 25.0 * (static_cast<double>(k) + 1.0) / 5.0;
@@ -116,20 +116,20 @@ std::unique_ptr<Folder> record_catheter(const Recipe& r) {
                 const double share = 0.2 * size;
                 q.proximal += share * (sum[0] - wanted.proximal);
                 q.distal += share * (sum[1] - wanted.distal);
-            } else if (e == "actuation-lag") {
+            } else if (acts("actuation-lag")) {
                 const double k = dt / fine / (0.25 * size);
                 lagged.proximal += k * (wanted.proximal - lagged.proximal);
                 lagged.distal += k * (wanted.distal - lagged.distal);
                 q.proximal = lagged.proximal;
                 q.distal = lagged.distal;
-            } else if (e == "segment-coupling") {
+            } else if (acts("segment-coupling")) {
                 q.proximal += 0.12 * size * wanted.distal;
-            } else if (e == "actuation-gain") {
+            } else if (acts("actuation-gain")) {
                 q.proximal *= 1.0 - 0.06 * size;
                 q.distal *= 1.0 + 0.05 * size;
-            } else if (e == "gravity-sag") {
+            } else if (acts("gravity-sag")) {
                 sag = 2.5 * size;
-            } else if (e == "rest-memory") {
+            } else if (acts("rest-memory")) {
                 const auto remember = [&](double now, double last, double& kept) {
                     kept += (now - kept) * (1.0 - std::exp(-0.03 * std::fabs(now - last)));
                 };
@@ -137,45 +137,45 @@ std::unique_ptr<Folder> record_catheter(const Recipe& r) {
                 remember(wanted.distal, before.distal, memory.distal);
                 q.proximal += 0.15 * size * (memory.proximal - wanted.proximal);
                 q.distal += 0.15 * size * (memory.distal - wanted.distal);
-            } else if (e == "torsion-windup") {
+            } else if (acts("torsion-windup")) {
                 const double slack = (3.0 + 0.08 * wanted.insertion) * size;  // deg to either side
                 if (wanted.rotation - twisted > slack) twisted = wanted.rotation - slack;
                 if (twisted - wanted.rotation > slack) twisted = wanted.rotation + slack;
                 q.rotation = twisted;
-            } else if (e == "grip-slip") {
+            } else if (acts("grip-slip")) {
                 if (run == 1 && i > rows * fine * 3 / 5) q.insertion -= 4.0 * size;
             }
             before = wanted;
             if (i % fine != 0) {
-                if (e == "sensor-latency") seen.push_back(tip_of(q, sag, down));
+                if (acts("sensor-latency")) seen.push_back(tip_of(q, sag, down));
                 continue;
             }
             V tip = tip_of(q, sag, down, taper);
-            if (e == "sensor-latency") {
+            if (acts("sensor-latency")) {
                 seen.push_back(tip);
                 const auto back = static_cast<std::size_t>(20.0 * size);  // hundredths of a second
                 tip = seen[seen.size() > back ? seen.size() - 1 - back : 0];
-            } else if (e == "registration") {
+            } else if (acts("registration")) {
                 tip = times(times(about(0, 0.8 * size * rad), about(2, 0.5 * size * rad)), tip);
                 tip[0] += 0.9 * size;
                 tip[2] -= 0.6 * size;
-            } else if (e == "field-distortion") {
+            } else if (acts("field-distortion")) {
                 distort(size, tip);
-            } else if (e == "sensor-drift") {
+            } else if (acts("sensor-drift")) {
                 tip[0] += 3.5 * size * t / 60.0;
                 tip[1] -= 2.5 * size * t / 60.0;
-            } else if (e == "respiration") {
+            } else if (acts("respiration")) {
                 const double b = 2.0 * size * breath(t / 4.1 + turn);
                 tip[1] += 0.3 * b;
                 tip[2] -= 0.95 * b;
-            } else if (e == "vibration") {
+            } else if (acts("vibration")) {
                 tip[0] += 0.9 * size * std::sin(2.0 * pi * t / 0.59);
-            } else if (e == "step") {
+            } else if (acts("step")) {
                 if (run == 2 && i > rows * fine / 2) {
                     tip[0] += 2.5 * size;
                     tip[2] -= 2.0 * size;
                 }
-            } else if (e == "outliers") {
+            } else if (acts("outliers")) {
                 if (uniform(random) < 0.03)
                     for (double& x : tip) x += 8.0 * size * normal(random);
             }

@@ -15,6 +15,12 @@ namespace explain_test {
 std::unique_ptr<Folder> record_catheter(const Recipe& r);
 std::unique_ptr<Folder> record_tendons(const Recipe& r);
 
+/// Whether an effect acts in a recording; two are written "a+b".
+inline bool acts_in(const Recipe& r, const std::string& effect) {
+    const auto at = r.effect.find('+');
+    return r.effect.substr(0, at) == effect || (at != std::string::npos && r.effect.substr(at + 1) == effect);
+}
+
 inline constexpr double pi = std::numbers::pi;
 inline constexpr double rad = pi / 180.0;
 

@@ -40,7 +40,7 @@ std::unique_ptr<Folder> record_tendons(const Recipe& r) {
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> uniform;
     const double size = r.strength;
-    const std::string& e = r.effect;
+    const auto acts = [&](const char* effect) { return acts_in(r, effect); };
     std::ostringstream csv;
     csv.precision(9);
     csv << "run,t_s";
@@ -69,24 +69,24 @@ std::unique_ptr<Folder> record_tendons(const Recipe& r) {
             const std::array<B, 3> wanted = wanted_at(t);
             std::array<B, 3> q = wanted;
             for (int s = 0; s < 3; ++s) {
-                if (e == "backlash") {
+                if (acts("backlash")) {
                     drag(wanted[s], 3.0 * size * rad, at[s]);
                     q[s] = at[s];
-                } else if (e == "hysteresis") {
+                } else if (acts("hysteresis")) {
                     B mean{};
                     for (std::size_t k = 0; k < plays.size(); ++k) {
                         drag(wanted[s], 5.0 * (static_cast<double>(k) + 1.0) * rad, plays[k][s]);
                         for (int a = 0; a < 2; ++a) mean[a] += 0.2 * plays[k][s][a];
                     }
                     for (int a = 0; a < 2; ++a) q[s][a] += 0.2 * size * (mean[a] - wanted[s][a]);
-                } else if (e == "actuation-lag") {
+                } else if (acts("actuation-lag")) {
                     for (int a = 0; a < 2; ++a)
                         lagged[s][a] += dt / fine / (0.25 * size) * (wanted[s][a] - lagged[s][a]);
                     q[s] = lagged[s];
-                } else if (e == "segment-coupling") {
+                } else if (acts("segment-coupling")) {
                     if (s < 2)
                         for (int a = 0; a < 2; ++a) q[s][a] += 0.12 * size * wanted[s + 1][a];
-                } else if (e == "rest-memory") {
+                } else if (acts("rest-memory")) {
                     const double way = std::hypot(wanted[s][0] - last[s][0], wanted[s][1] - last[s][1]) / rad;
                     for (int a = 0; a < 2; ++a) {
                         memory[s][a] += (wanted[s][a] - memory[s][a]) * (1.0 - std::exp(-0.03 * way));
@@ -94,7 +94,7 @@ std::unique_ptr<Folder> record_tendons(const Recipe& r) {
                     }
                 }
             }
-            if (e == "tendon-routing") {
+            if (acts("tendon-routing")) {
                 // Springs of segments and of tendons alike; their balance by going round until nothing moves.
                 std::array<B, 3> b = wanted;
                 for (int round = 0; round < 60; ++round)
@@ -111,24 +111,24 @@ std::unique_ptr<Folder> record_tendons(const Recipe& r) {
                     for (int a = 0; a < 2; ++a) q[s][a] += 0.35 * size * (b[s][a] - wanted[s][a]);
             }
             last = wanted;
-            if (e == "sensor-latency") seen.push_back(robot_tip(q, 0.0));
+            if (acts("sensor-latency")) seen.push_back(robot_tip(q, 0.0));
             if (i % fine != 0) continue;
-            V tip = e == "sensor-latency" ? V{} : robot_tip(q, e == "curvature-taper" ? -0.35 * size : 0.0);
-            if (e == "sensor-latency") {
+            V tip = acts("sensor-latency") ? V{} : robot_tip(q, acts("curvature-taper") ? -0.35 * size : 0.0);
+            if (acts("sensor-latency")) {
                 const auto back = static_cast<std::size_t>(20.0 * size);
                 tip = seen[seen.size() > back ? seen.size() - 1 - back : 0];
             }
-            if (e == "field-distortion") distort(size, tip);
-            if (e == "sensor-drift") {
+            if (acts("field-distortion")) distort(size, tip);
+            if (acts("sensor-drift")) {
                 tip[0] += 3.5 * size * t / 60.0;
                 tip[1] -= 2.5 * size * t / 60.0;
             }
-            if (e == "vibration") tip[0] += 0.9 * size * std::sin(2.0 * pi * t / 0.59);
-            if (e == "step" && run == 2 && i > rows * fine / 2) {
+            if (acts("vibration")) tip[0] += 0.9 * size * std::sin(2.0 * pi * t / 0.59);
+            if (acts("step") && run == 2 && i > rows * fine / 2) {
                 tip[0] += 2.5 * size;
                 tip[2] -= 2.0 * size;
             }
-            if (e == "outliers" && uniform(random) < 0.03)
+            if (acts("outliers") && uniform(random) < 0.03)
                 for (double& x : tip) x += 8.0 * size * normal(random);
             csv << run << "," << t;
             for (int s = 0; s < 3; ++s)

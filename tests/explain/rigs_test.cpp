@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/errors.h"
+#include "explain/beat_clock.h"
 #include "explain/folder.h"
 #include "explain/rig.h"
 #include "explain/tracer.h"
@@ -151,4 +152,19 @@ TEST(Odd, ConstantInputsAColumnOfZerosAndASingleRunGiveAnHonestAnswer) {
     const Folder unmoved(head + tendon_setup, still);
     EXPECT_NE(error_of([&] { explain(read_dataset(unmoved.path())); }).find("no tendon was ever pulled"),
               std::string::npos);
+}
+
+TEST(Beats, EarlyOnesAndThePausesAfterThemAreNoFalseTriggers) {
+    std::vector<double> beats{0.0};
+    for (int k = 1; k < 31; ++k) beats.push_back(beats.back() + 0.87 * (k % 7 == 4 ? 0.62 : (k % 7 == 5 ? 1.38 : 1.0)));
+    EXPECT_EQ(beats_among(beats), beats);
+}
+
+TEST(Beats, ATriggerBetweenTwoOfARhythmIsLeftOut) {
+    std::vector<double> beats;
+    for (int k = 0; k < 20; ++k) beats.push_back(0.65 * k);
+    std::vector<double> triggers = beats;
+    for (const int k : {3, 8, 15}) triggers.push_back(0.65 * k + 0.17);
+    std::sort(triggers.begin(), triggers.end());
+    EXPECT_EQ(beats_among(triggers), beats);
 }
