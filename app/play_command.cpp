@@ -41,8 +41,16 @@ void run_play(PlayArguments& arguments, AppContext& context) {
     }
     if (!arguments.size.empty()) read_size(arguments.size, options.window);
     options.record = !arguments.no_record;
+    if (!arguments.scene.empty() && !options.task.empty())
+        throw UserError("a task is a scene of its own: give SCENE or --task, not both", true);
+    if (!options.study.empty() && options.participant.empty())
+        throw UserError("--study wants --participant: who sits at the controls, by pseudonym", true);
+    if (!options.study.empty() && (!arguments.scene.empty() || !options.task.empty() || !options.replay.empty()))
+        throw UserError("--study chooses the scene itself: no SCENE, --task or --replay with it", true);
+    if (!options.study.empty() && arguments.no_record)
+        throw UserError("a trial of a study is recorded: --study and --no-record exclude each other", true);
     options.at_once = !arguments.scene.empty();
-    if (options.replay.empty())
+    if (options.replay.empty() && options.study.empty())
         options.scene = find_scene(arguments.scene.empty() ? "training" : arguments.scene, context.data_root);
     if (arguments.difficulty == "guided") options.difficulty = play::Difficulty::guided;
     if (arguments.difficulty == "standard") options.difficulty = play::Difficulty::standard;
@@ -68,7 +76,7 @@ void add_play_command(CLI::App& app, AppContext& context) {
     play::PlayOptions& options = arguments->options;
     CLI::App* command = app.add_subcommand("play", "The trainer: a window, a gamepad or a keyboard");
     command->add_option("SCENE", arguments->scene, "begins with it at once; else a start screen");
-    command->add_option("--task", options.task, "a task of assets/tasks, by its name");
+    command->add_option("--task", options.task, "a task of scenes/tasks, by its name, instead of a scene");
     command->add_option("--overlay", options.overlays, "a file laid over the scene; may be given again")
         ->allow_extra_args(false);
     command->add_option("--difficulty", arguments->difficulty, "how much help there is")
@@ -76,6 +84,8 @@ void add_play_command(CLI::App& app, AppContext& context) {
     command->add_option("--out", options.out, "the run folder of the first session; else a new one of the user's");
     command->add_flag("--no-record", arguments->no_record, "keep nothing");
     command->add_option("--replay", options.replay, "shows a recorded run, with a time line");
+    CLI::Option* study = command->add_option("--study", options.study, "the next trial of a study's participant");
+    command->add_option("--participant", options.participant, "who, by pseudonym")->needs(study);
     command->add_option("--size", arguments->size, "of the window, WxH");
     command->add_flag("--fullscreen", options.window.fullscreen, "the whole screen");
     command->add_option("--config", options.settings, "the settings' file; else play.toml in the user's settings");

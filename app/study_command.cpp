@@ -11,7 +11,6 @@
 #include "autopilot/skill.h"
 #include "commands.h"
 #include "core/errors.h"
-#include "core/hash.h"
 #include "core/html_page.h"
 #include "progress.h"
 #include "record/run_files.h"
@@ -34,10 +33,6 @@ struct StudyOptions {
     int participants = 20;
     int threads = default_threads();
 };
-
-std::string task_scene(const std::string& task, const AppContext& context) {
-    return context.data_root + "/scenes/tasks/" + task + ".toml";
-}
 
 void init(const StudyOptions& options, const AppContext& context) {
     Protocol protocol;
@@ -63,10 +58,6 @@ void add(const StudyOptions& options) {
                 options.group.c_str());
 }
 
-bool done(const std::string& study, const Trial& trial) {
-    return fs::exists(study + "/" + trial.folder + "/manifest.json");
-}
-
 RunIndex rebuilt_index(const std::string& folder, std::vector<std::string>& left_out) {
     RunIndex index(folder + "/index.sqlite", folder);
     left_out = index.rebuild().left_out;
@@ -81,7 +72,7 @@ void status(const StudyOptions& options) {
     std::map<std::string, std::string> next;
     int all = 0;
     for (const Trial& trial : trials) {
-        if (done(options.folder, trial)) {
+        if (trial_done(options.folder, trial)) {
             ++count[trial.participant];
             ++all;
         } else {
@@ -98,15 +89,6 @@ void status(const StudyOptions& options) {
     for (const std::string& sentence : left_out) std::printf("  left out: %s\n", sentence.c_str());
 }
 
-/// The same for the same study, participant, task and trial, whatever else is run.
-std::uint64_t seed_of(const Protocol& protocol, const Trial& trial) {
-    Hash64 hash;
-    for (const std::string& text : {protocol.name, trial.participant, trial.task}) hash.text(text);
-    hash.word(static_cast<std::uint64_t>(trial.trial));
-    constexpr std::uint64_t most = 9007199254740991;  // what a scene's seed may be
-    return hash.value() & most;
-}
-
 void rehearse(const StudyOptions& options, AppContext& context) {
     const Protocol protocol = read_study(options.folder);
     for (const std::string& group : protocol.groups) find_skill(group);
@@ -118,7 +100,7 @@ void rehearse(const StudyOptions& options, AppContext& context) {
     }
     std::vector<Trial> open;
     for (const Trial& trial : schedule(protocol, read_participants(options.folder, protocol)))
-        if (trial.synthetic && !done(options.folder, trial)) open.push_back(trial);
+        if (trial.synthetic && !trial_done(options.folder, trial)) open.push_back(trial);
     std::map<std::string, std::pair<SceneSpec, std::shared_ptr<const SceneModels>>> scenes;
     for (const Trial& trial : open) {
         if (scenes.contains(trial.task)) continue;
@@ -134,7 +116,9 @@ void rehearse(const StudyOptions& options, AppContext& context) {
         for (std::size_t k = next++; k < open.size() && !stop_wanted(); k = next++) {
             try {
                 const auto& [scene, models] = scenes.at(open[k].task);
-                if (run_trial(options.folder, open[k], scene, *models, seed_of(protocol, open[k]), context)) ++finished;
+                const PilotedRun run{options.folder + "/" + open[k].folder, open[k].group,
+                                     trial_seed(protocol, open[k]), trial_json(open[k])};
+                if (fly(run, scene, *models, context)) ++finished;
             } catch (...) {
                 const std::scoped_lock lock(mutex);
                 if (!failure) failure = std::current_exception();

@@ -36,17 +36,18 @@ std::string TaskWatch::result_json(const OperatorName& who) const {
     if (!task_) return "";
     const Metrics m = metrics();
     const auto completed = tracker_->completed_at_s();
-    const nlohmann::ordered_json out{{"task", task_->name},
-                                     {"operator", who.kind},
-                                     {"skill", who.skill},
-                                     {"reached", reached()},
-                                     {"completed_at_s", completed ? nlohmann::json(*completed) : nlohmann::json()},
-                                     {"score", score()},
-                                     {"pass_score", task_->pass_score},
-                                     {"passed", reached() && score() >= task_->pass_score},
-                                     {"play_time_s", m.play_time_s},
-                                     {"force_bar_max", m.force_bar_max},
-                                     {"fluoroscopy_time_s", m.fluoroscopy_time_s}};
+    nlohmann::ordered_json out{{"task", task_->name},
+                               {"operator", who.kind},
+                               {"skill", who.skill},
+                               {"reached", reached()},
+                               {"completed_at_s", completed ? nlohmann::json(*completed) : nlohmann::json()},
+                               {"score", score()},
+                               {"pass_score", task_->pass_score},
+                               {"passed", reached() && score() >= task_->pass_score},
+                               {"play_time_s", m.play_time_s},
+                               {"force_bar_max", m.force_bar_max},
+                               {"fluoroscopy_time_s", m.fluoroscopy_time_s}};
+    if (!who.difficulty.empty()) out["difficulty"] = who.difficulty;
     return out.dump(2) + "\n";
 }
 

@@ -16,6 +16,7 @@ namespace cathlab {
 struct OperatorName {
     std::string kind = "script";  ///< "script", "autopilot", "person"
     std::string skill;            ///< of the autopilot
+    std::string difficulty = {};  ///< of a person: how much help there was
 };
 
 class TaskWatch {
@@ -27,6 +28,10 @@ public:
     /// Whether the task has come to its end; never without one.
     bool over() const;
     bool reached() const;
+    /// Null without a task.
+    const GoalTracker* tracker() const { return tracker_ ? &*tracker_ : nullptr; }
+    /// Where the goal is now, world, mm; with a task alone.
+    Vec3 goal(const World& world) const { return goal_->now(world); }
     const std::optional<TaskSpec>& task() const { return task_; }
     Metrics metrics() const { return metrics_.result(); }
     const ForceMap& forces() const { return forces_; }

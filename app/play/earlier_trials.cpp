@@ -13,18 +13,6 @@ constexpr std::size_t most_shown = 8;
 
 }  // namespace
 
-std::string result_json(const std::string& task, const std::string& difficulty, bool reached, double score,
-                        const Metrics& metrics) {
-    nlohmann::ordered_json out{{"task", task},
-                               {"difficulty", difficulty},
-                               {"reached", reached},
-                               {"score", score},
-                               {"play_time_s", metrics.play_time_s},
-                               {"force_bar_max", metrics.force_bar_max},
-                               {"fluoroscopy_time_s", metrics.fluoroscopy_time_s}};
-    return out.dump(2) + "\n";
-}
-
 std::vector<ResultView::Earlier> earlier_trials(const std::string& folder, const std::string& task,
                                                 const std::string& except) {
     std::vector<ResultView::Earlier> out;
@@ -40,7 +28,7 @@ std::vector<ResultView::Earlier> earlier_trials(const std::string& folder, const
             return it != json.end() && it->is_number() ? it->get<double>() : 0.0;
         };
         out.push_back({entry.path().filename().string(), number("score"), number("play_time_s"),
-                       number("force_bar_max"), number("fluoroscopy_time_s")});
+                       number("force_bar_max"), number("fluoroscopy_time_s"), json.value("difficulty", "")});
     }
     // Folders begin with the date.
     std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.name > b.name; });

@@ -8,10 +8,6 @@
 
 namespace cathlab::play {
 
-/// result.json
-std::string result_json(const std::string& task, const std::string& difficulty, bool reached, double score,
-                        const Metrics& metrics);
-
 /// The newest of the task below a folder, without `except`; what cannot be read is left out.
 std::vector<ResultView::Earlier> earlier_trials(const std::string& folder, const std::string& task,
                                                 const std::string& except);

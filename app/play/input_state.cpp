@@ -151,7 +151,6 @@ const Controls& InputState::evaluate(const Settings& settings) {
         was_down_[i] = is_down;
         controls_.value[i] = value;
     }
-    on_screen_.fill(0.0);
     wheel_ = 0.0;
     key_tapped_.fill(false);
     mouse_tapped_.fill(false);

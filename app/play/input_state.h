@@ -21,13 +21,14 @@ public:
     /// window that loses the keyboard).  over_panel: the pointer is over a panel; typing: letters go into a text field.
     void feed(const SDL_Event& event, bool over_panel = false, bool typing = false);
 
-    /// A control that is held with the mouse on the screen, for this frame.
+    /// The screens are drawn anew: what was held on them counts no more.
+    void screens_begin() { on_screen_.fill(0.0); }
+    /// A control that is held with the mouse on the screen, until they are drawn again.
     void hold(Control control, double value);
     /// ... or pressed once.
     void press(Control control);
 
-    /// Once a frame: the values and presses that follow from what was fed.  The wheel and what was held on the screen
-    /// count once.
+    /// The values and presses that follow from what was fed.  The wheel counts once.
     const Controls& evaluate(const Settings& settings);
 
     /// Everything of the pad, or of the keyboard and the mouse, is let go.

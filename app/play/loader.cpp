@@ -88,9 +88,6 @@ void Loader::load_setup(const LoadRequest& request, SimulationOptions& options) 
     const SceneSpec plain = load_scene(setup.scene, setup.overlays, context_.data_root);
     const std::string overlay = setup_toml(setup, plain);
     std::vector<std::string> overlays = setup.overlays;
-    const std::optional<TaskSpec> own = task_of(plain);
-    if (!setup.task.empty())
-        options.task = own && own->name == setup.task ? *own : find_task(setup.task, context_.data_root).task;
     std::string folder;
     if (request.run.record) {
         try {
@@ -111,12 +108,15 @@ void Loader::load_setup(const LoadRequest& request, SimulationOptions& options) 
         write_whole_file(overlays.back(), overlay);
     }
     options.scene = overlay.empty() ? plain : load_scene(setup.scene, overlays, context_.data_root);
+    if (request.seed) options.scene.seed = *request.seed;
+    if (!setup.task.empty()) options.task = task_of(options.scene);
     if (folder.empty()) return;
     RecorderOptions recorder;
     recorder.folder = folder;
     recorder.overlays = overlays;
     recorder.threads = options.threads;
-    if (!request.run.participant.empty())
+    recorder.trial = request.trial;
+    if (request.trial.empty() && !request.run.participant.empty())
         recorder.trial =
             nlohmann::ordered_json{
                 {"participant", request.run.participant}, {"group", ""}, {"task", setup.task}, {"trial", 0}}
@@ -146,7 +146,7 @@ void Loader::load(const LoadRequest& request) {
         models_ = build_models(options.scene, build);
         models_of_ = options.scene.hash;
     }
-    simulation_ = std::make_unique<Simulation>(std::move(options), *models_, context_);
+    simulation_ = std::make_unique<Simulation>(std::move(options), models_, context_);
 }
 
 }  // namespace cathlab::play

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -18,8 +19,10 @@ namespace cathlab::play {
 struct LoadRequest {
     Setup setup;
     RunSettings run;
-    std::string folder;  ///< of the recording; "" = a new one under the settings' folder
-    std::string replay;  ///< a run folder: it is replayed instead, and not recorded
+    std::string folder;                 ///< of the recording; "" = a new one under the settings' folder
+    std::string trial;                  ///< text of trial.json; "" = by run.participant
+    std::optional<std::uint64_t> seed;  ///< instead of the scene's
+    std::string replay;                 ///< a run folder: it is replayed instead, and not recorded
 };
 
 class Loader {

@@ -3,8 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
+#include <atomic>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <thread>
 
@@ -20,14 +21,40 @@ double resident_mb() {
     return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1048576.0;
 }
 
-double quantile(std::vector<float> values, double share) {
-    if (values.empty()) return 0.0;
-    std::sort(values.begin(), values.end());
-    return static_cast<double>(values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))]);
-}
-
 double since(Clock::time_point begin) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// A hand that pushes and pulls in turn, so that the wire stays where it is; on a thread of its own, so that it moves at
+// any time of a turn.
+class Hand {
+public:
+    Hand() : thread_([this] { loop(); }) {}
+    ~Hand() {
+        ends_ = true;
+        thread_.join();
+    }
+    Hand(const Hand&) = delete;
+    Hand& operator=(const Hand&) = delete;
+
+private:
+    void loop() {
+        bool push = false;
+        for (int i = 0; !ends_; ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(320 + 37 * (i % 7)));
+            send_key(push ? SDL_SCANCODE_W : SDL_SCANCODE_S, false);
+            push = !push;
+            send_key(push ? SDL_SCANCODE_W : SDL_SCANCODE_S, true);
+        }
+    }
+    std::atomic<bool> ends_ = false;
+    std::thread thread_;
+};
+
+void print(const char* what, const Durations& times) {
+    if (times.count() == 0) return;
+    std::printf("%s: median %.1f ms, 95 %% within %.1f ms, p99 %.1f ms, of %llu\n", what, 1e3 * times.quantile(0.5),
+                1e3 * times.quantile(0.95), 1e3 * times.quantile(0.99), static_cast<unsigned long long>(times.count()));
 }
 
 }  // namespace
@@ -39,51 +66,44 @@ void measure(PlayOptions options, const AppContext& context, double seconds) {
     PlayApp app(options, context);
     while (app.screen() == Screen::loading && app.frame(1.0 / 60.0))
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    std::printf("window: %s\n", app.window().description().c_str());
+    std::printf("window: %s, %d x %d\n", app.window().description().c_str(), app.window().width(),
+                app.window().height());
     std::printf("from the start of the program's window to the first frame that can be steered: %.2f s\n",
                 since(begin));
-    const auto playing = Clock::now();
     send_key(SDL_SCANCODE_SPACE, true);
+    const Hand hand;
+    const auto playing = Clock::now();
+    const std::clock_t processor = std::clock();
     std::uint64_t turns = 0;
-    double next_mb = 0.0, next_key = 0.5;
-    bool pushed = false, going = true;
-    auto last = Clock::now();
-    while (since(playing) < seconds && going) {
-        const auto turn = Clock::now();
-        going = app.frame(std::chrono::duration<double>(turn - last).count());
-        last = turn;
-        ++turns;
-        const double now = since(playing);
-        if (now >= next_key) {  // push and pull in turn, so that the wire stays where it is
-            next_key += 0.7;
-            send_key(pushed ? SDL_SCANCODE_W : SDL_SCANCODE_S, false);
-            pushed = !pushed;
-            send_key(pushed ? SDL_SCANCODE_W : SDL_SCANCODE_S, true);
-        }
-        if (now >= next_mb) {
-            std::printf("after %5.0f s: %.0f MB, x%.2f of real time\n", now, resident_mb(),
+    double next_mb = 0.0;
+    for (const Side side : {Side::displacement, Side::inner}) {
+        app.set_side(side);
+        app.forget_latencies();
+        const double end = side == Side::inner ? seconds : 0.5 * seconds;
+        for (double now = since(playing); now < end && app.turn(); now = since(playing), ++turns) {
+            if (now < next_mb) continue;
+            std::printf("after %5.0f s: %.1f MB, x%.2f of real time\n", now, resident_mb(),
                         app.simulation() != nullptr ? app.simulation()->status().real_time_factor : 0.0);
             std::fflush(stdout);
             next_mb += std::max(10.0, seconds / 10.0);
         }
-        const double spent = since(turn);
-        if (spent < 1.0 / 60.0) std::this_thread::sleep_for(std::chrono::duration<double>(1.0 / 60.0 - spent));
+        print(side == Side::inner ? "hand to window, inner view" : "hand to window, from outside", app.latencies());
     }
     const double played = since(playing);
-    const auto& latencies = app.latencies_ms();
-    std::printf("hand to picture: median %.0f ms, 95 %% within %.0f ms, of %zu commands\n", quantile(latencies, 0.5),
-                quantile(latencies, 0.95), latencies.size());
     if (app.simulation() != nullptr) {
-        const Lateness late = app.simulation()->lateness();
-        std::printf("steps began late by: median %.1f ms, p99 %.1f ms, of %llu steps of %.0f ms\n",
-                    1e3 * late.quantile(0.5), 1e3 * late.quantile(0.99), static_cast<unsigned long long>(late.count()),
-                    20.0);
+        const SimThread::Pace pace = app.simulation()->pace();
+        print("a step with its description", pace.cost);
+        print("steps began late by", pace.late);
     }
-    if (app.painter() != nullptr)
-        std::printf("pictures: fluoroscopy %.1f ms, inner view %.1f ms, from outside %.1f ms\n",
-                    app.painter()->cost_ms(View::fluoroscopy), app.painter()->cost_ms(View::inner),
-                    app.painter()->cost_ms(View::outer));
-    std::printf("window: %.0f frames a second; memory %.0f MB\n", static_cast<double>(turns) / played, resident_mb());
+    if (app.painter() != nullptr) {
+        print("a fluoroscopy", app.painter()->cost(View::fluoroscopy));
+        print("an inner view", app.painter()->cost(View::inner));
+        print("a view from outside", app.painter()->cost(View::outer));
+    }
+    print("a turn of the window", app.turn_cost());
+    std::printf("window: %.0f frames a second; %.2f processors busy; memory %.1f MB\n",
+                static_cast<double>(turns) / played,
+                static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC / played, resident_mb());
 }
 
 }  // namespace cathlab::play

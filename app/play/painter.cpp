@@ -2,50 +2,65 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace cathlab::play {
 namespace {
 
-constexpr double quick_view_s = 1.0 / 40.0;  // the views without X-rays come at most so often
+constexpr double quick_rest = 0.5;  // after a quick view it rests for this share of what the view took
 
-constexpr int painter_niceness = 10;
+// Where processors are short, pictures wait and the simulation does not: the fluoroscopy first, which is only due with
+// the X-ray pulses.
+constexpr int fluoroscopy_niceness = 5, quick_niceness = 1;
+
+double since(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 }  // namespace
 
-Painter::Painter(TripleBuffer<Shot>& shots, bool threaded, const MakeTarget& make_target)
-    : shots_(shots), threaded_(threaded) {
-    if (threaded)
-        thread_ = std::thread([this, make_target] { loop(make_target); });
-    else
-        renderer_ = std::make_unique<FrameRenderer>(make_target());
+Painter::Painter(Shots& shots, bool threaded, const MakeTarget& make_target, std::function<void()> ready)
+    : ready_call_(std::move(ready)) {
+    easels_[0].shots = &shots.newest;
+    easels_[1].shots = &shots.exposures;
+    easels_[1].exposures = true;
+    for (Easel& easel : easels_) {
+        if (threaded)
+            easel.thread = std::thread([this, &easel, make_target] { loop(easel, make_target); });
+        else
+            easel.renderer = std::make_unique<FrameRenderer>(make_target());
+    }
 }
 
 Painter::~Painter() {
     stopping_ = true;
-    shots_.wake();
-    if (thread_.joinable()) thread_.join();
+    for (Easel& easel : easels_) {
+        easel.shots->wake();
+        if (easel.thread.joinable()) easel.thread.join();
+    }
 }
 
-void Painter::loop(const MakeTarget& make_target) {
-    // On Linux this is the thread's own: where processors are short, pictures wait and the simulation does not.
-    ::setpriority(PRIO_PROCESS, 0, painter_niceness);
+void Painter::loop(Easel& easel, const MakeTarget& make_target) {
+    // On Linux this is the thread's own.
+    const int niceness = ::getpriority(PRIO_PROCESS, 0) + (easel.exposures ? fluoroscopy_niceness : quick_niceness);
+    ::setpriority(PRIO_PROCESS, 0, niceness);
     try {
-        renderer_ = std::make_unique<FrameRenderer>(make_target());
+        easel.renderer = std::make_unique<FrameRenderer>(make_target());
         while (!stopping_) {
-            const bool fresh = shots_.take_within(std::chrono::milliseconds(50));
-            if (!stopping_) paint_views(shots_.front(), fresh);
+            std::this_thread::sleep_until(easel.rests_until);
+            const bool fresh = easel.shots->take_within(std::chrono::milliseconds(50));
+            if (!stopping_) paint(easel, fresh);
         }
     } catch (const std::exception& error) {
         const std::lock_guard lock(mutex_);
         fault_ = error.what();
     }
-    renderer_.reset();  // where its context is current
+    easel.renderer.reset();  // where its context is current
 }
 
 void Painter::paint() {
-    const bool fresh = shots_.take();
-    paint_views(shots_.front(), fresh);
+    for (Easel& easel : easels_) paint(easel, easel.shots->take());
 }
 
 void Painter::wish(const PaintSizes& sizes) {
@@ -53,31 +68,29 @@ void Painter::wish(const PaintSizes& sizes) {
     wished_ = sizes;
 }
 
-void Painter::paint_views(Shot& shot, bool fresh) {
+void Painter::paint(Easel& easel, bool fresh) {
+    Shot& shot = easel.shots->front();
     PaintSizes sizes;
     {
         const std::lock_guard lock(mutex_);
         sizes = wished_;
     }
     if (shot.picture.lumen.vertices.empty()) return;  // nothing was published yet
-    const bool resized = !(sizes == painted_);
-    if (!fresh && !resized) return;
-    painted_ = sizes;
-    const bool paced =
-        threaded_ && !resized && std::chrono::duration<double>(Clock::now() - quick_painted_).count() < quick_view_s;
-    if (!paced) {
-        paint_view(View::inner, shot, sizes);
-        paint_view(View::outer, shot, sizes);
-        quick_painted_ = Clock::now();
+    if (easel.exposures) {
+        // Between the pulses, and while the pedal is up, the last picture stands.
+        if (fresh) paint_view(easel, View::fluoroscopy, shot, sizes);
+        return;
     }
-    // Between the pulses, and while the pedal is up, the last picture stands.
-    if (shot.pulses != pulses_ && shot.picture.beam_on) {
-        pulses_ = shot.pulses;
-        paint_view(View::fluoroscopy, shot, sizes);
-    }
+    if (!fresh && sizes == easel.painted) return;
+    easel.painted = sizes;
+    const auto begin = Clock::now();
+    paint_view(easel, View::inner, shot, sizes);
+    paint_view(easel, View::outer, shot, sizes);
+    const auto end = Clock::now();
+    easel.rests_until = end + std::chrono::duration_cast<Clock::duration>(quick_rest * (end - begin));
 }
 
-void Painter::paint_view(View view, Shot& shot, const PaintSizes& sizes) {
+void Painter::paint_view(Easel& easel, View view, Shot& shot, const PaintSizes& sizes) {
     const auto i = static_cast<std::size_t>(view);
     if (sizes.width[i] < 64 || sizes.height[i] < 64) return;
     FrameDescription& frame = shot.picture;
@@ -89,18 +102,21 @@ void Painter::paint_view(View view, Shot& shot, const PaintSizes& sizes) {
     frame.overlay = {};
     const auto begin = Clock::now();
     try {
-        renderer_->render(frame, drawn_[i]);
+        easel.renderer->render(frame, drawn_[i]);
     } catch (const std::exception& error) {  // one picture is lost, not the session
         const std::lock_guard lock(mutex_);
         fault_ = std::string("a picture could not be drawn: ") + error.what();
         return;
     }
-    cost_ms_[i] = 1e3 * std::chrono::duration<double>(Clock::now() - begin).count();
-    const std::lock_guard lock(mutex_);
-    if (observer_) observer_(view, frame, drawn_[i]);
-    std::swap(ready_[i], drawn_[i]);
-    stamp_[i] = shot.stamp;
-    fresh_[i] = true;
+    {
+        const std::lock_guard lock(mutex_);
+        cost_[i].add(since(begin));
+        if (observer_) observer_(view, frame, drawn_[i]);
+        std::swap(ready_[i], drawn_[i]);
+        stamp_[i] = shot.stamp;
+        fresh_[i] = true;
+    }
+    if (!easel.exposures && ready_call_) ready_call_();
 }
 
 bool Painter::take(View view, Image8& picture, std::uint64_t& stamp) {
@@ -113,9 +129,19 @@ bool Painter::take(View view, Image8& picture, std::uint64_t& stamp) {
     return true;
 }
 
+bool Painter::has_quick() const {
+    const std::lock_guard lock(mutex_);
+    return fresh_[static_cast<std::size_t>(View::inner)] || fresh_[static_cast<std::size_t>(View::outer)];
+}
+
 std::string Painter::fault() const {
     const std::lock_guard lock(mutex_);
     return fault_;
+}
+
+Durations Painter::cost(View view) const {
+    const std::lock_guard lock(mutex_);
+    return cost_[static_cast<std::size_t>(view)];
 }
 
 void Painter::set_observer(std::function<void(View, const FrameDescription&, const Image8&)> observer) {

@@ -1,5 +1,5 @@
 // Descriptions -> pictures, each view at its own pace: the fluoroscopy with the X-ray pulses, the others as often as
-// the machine allows.  On a thread of its own, or called (tests).
+// the machine allows.  On two threads, so that a slow fluoroscopy keeps nothing else waiting; or called (tests).
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "imaging/image.h"
+#include "play/durations.h"
 #include "play/sim_thread.h"
 #include "render/frame_renderer.h"
 
@@ -29,49 +30,56 @@ struct PaintSizes {
 class Painter {
 public:
     using MakeTarget = std::function<std::unique_ptr<GlTarget>()>;
-    /// make_target is called on the thread that draws.  Throws UserError (not threaded) where there is no GL.
-    Painter(TripleBuffer<Shot>& shots, bool threaded, const MakeTarget& make_target);
+    /// make_target is called on the threads that draw; ready, on one of them, after each picture of a quick view.
+    /// Throws UserError (not threaded) where there is no GL.
+    Painter(Shots& shots, bool threaded, const MakeTarget& make_target, std::function<void()> ready = {});
     ~Painter();
     Painter(const Painter&) = delete;
     Painter& operator=(const Painter&) = delete;
 
     void wish(const PaintSizes& sizes);
-    /// Without a thread: draws what is due.
+    /// Without threads: draws what is due.
     void paint();
 
     /// Swaps in the newest picture of a view; false where there is none newer.  stamp: of the hands' command in it.
     bool take(View view, Image8& picture, std::uint64_t& stamp);
+    /// Whether there is a new picture of a quick view.
+    bool has_quick() const;
     /// "" or why a picture could not be drawn.
     std::string fault() const;
-    /// Milliseconds that the last picture of a view took.
-    double cost_ms(View view) const { return cost_ms_[static_cast<std::size_t>(view)]; }
+    /// How long the pictures of a view took so far.
+    Durations cost(View view) const;
     /// Called after each picture with the description that it was drawn from, for tests and clips.
     void set_observer(std::function<void(View, const FrameDescription&, const Image8&)> observer);
 
 private:
-    void loop(const MakeTarget& make_target);
-    void paint_views(Shot& shot, bool fresh);
-    void paint_view(View view, Shot& shot, const PaintSizes& sizes);
+    // One thread and its context: of the fluoroscopy, or of the quick views.
+    struct Easel {
+        TripleBuffer<Shot>* shots = nullptr;
+        bool exposures = false;
+        std::unique_ptr<FrameRenderer> renderer;
+        PaintSizes painted;
+        Clock::time_point rests_until;
+        std::thread thread;
+    };
+    void loop(Easel& easel, const MakeTarget& make_target);
+    void paint(Easel& easel, bool fresh);
+    void paint_view(Easel& easel, View view, Shot& shot, const PaintSizes& sizes);
 
-    TripleBuffer<Shot>& shots_;
-    std::unique_ptr<FrameRenderer> renderer_;
+    std::function<void()> ready_call_;
+    std::array<Easel, 2> easels_;
     std::array<Image8, view_count> drawn_;
-    std::uint64_t pulses_ = 0;
-    PaintSizes painted_;
-    Clock::time_point quick_painted_;
-    bool threaded_ = false;
 
-    mutable std::mutex mutex_;
+    mutable std::mutex mutex_;  // of what follows
     PaintSizes wished_;
     std::array<Image8, view_count> ready_;
     std::array<std::uint64_t, view_count> stamp_{};
     std::array<bool, view_count> fresh_{};
+    std::array<Durations, view_count> cost_;
     std::string fault_;
     std::function<void(View, const FrameDescription&, const Image8&)> observer_;
 
-    std::array<std::atomic<double>, view_count> cost_ms_{};
     std::atomic<bool> stopping_ = false;
-    std::thread thread_;
 };
 
 }  // namespace cathlab::play

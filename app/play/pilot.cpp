@@ -6,11 +6,13 @@
 namespace cathlab::play {
 namespace {
 
-constexpr double jog_mm_s = 25.0;      // a step of 1 mm takes two steps of the simulation
-constexpr double jog_begins = 0.5;     // of full deflection
-constexpr double jog_ends = 0.3;       // below this the next step may begin
-constexpr double follow_share = 0.22;  // of the field at the isocentre: within this of the middle the tip may wander
-constexpr double follow_per_s = 2.0;   // rate at which the table makes up for the rest
+constexpr double jog_mm_s = 25.0;       // a step of 1 mm takes two steps of the simulation
+constexpr double jog_begins = 0.5;      // of full deflection
+constexpr double jog_ends = 0.3;        // below this the next step may begin
+constexpr double follow_share = 0.26;   // of the field at the isocentre: within this of the middle the tip may wander
+constexpr double follow_past = 0.12;    // then the table moves the tip to so far on the other side, and stands again
+constexpr double follow_rest_s = 0.25;  // seconds that the table would take for what is left: it comes to rest softly
+constexpr double follow_ends_mm = 1.0;
 constexpr double magnification = 1.4;  // SID / SOD, roughly: the field that is seen in the patient is smaller
 
 }  // namespace
@@ -78,10 +80,14 @@ void Pilot::imaging(const Controls& controls, const InputSettings& settings, con
     if (follows_ && channels.time_s > 0.0) {
         const double z = device_ == 0 ? channels.wire_tip_z_mm : channels.catheter_tip_z_mm;
         const double off = z - (middle_.z() + channels.table_longitudinal_mm);
-        const double room = follow_share * field_mm_;
-        const double too_far = off - std::clamp(off, -room, room);
+        // In one go and then at rest: while the table moves, all of the patient has to be drawn anew.
+        if (follow_way_ == 0 && std::fabs(off) > follow_share * field_mm_) follow_way_ = off > 0.0 ? 1 : -1;
+        const double left = off + follow_way_ * follow_past * field_mm_;
+        if (follow_way_ * left < follow_ends_mm) follow_way_ = 0;
         const double most = settings.table_mm_s * dt;
-        along_mm += std::clamp(too_far * follow_per_s * dt, -most, most);
+        if (follow_way_ != 0) along_mm += std::clamp(left / follow_rest_s * dt, -most, most);
+    } else {
+        follow_way_ = 0;
     }
     input_.table_longitudinal = std::clamp(input_.table_longitudinal + along_mm, -1000.0, 1000.0);
     input_.table_lateral = std::clamp(input_.table_lateral + across_mm, -200.0, 200.0);

@@ -18,6 +18,8 @@ public:
     /// The input of the next step of dt seconds.  channels: of the step before (for the table that follows the tip).
     Input step(const Controls& controls, const InputSettings& settings, const Channels& channels, double dt);
 
+    bool has_wire() const { return has_wire_; }
+    bool has_catheter() const { return has_catheter_; }
     bool catheter() const { return device_ == 1; }
     int segment() const { return segment_; }  ///< of the catheter: 0 = proximal, 1 = distal
     bool jog() const { return jog_; }
@@ -39,6 +41,7 @@ private:
     int device_ = 0, segment_ = 1;
     bool jog_ = false, moves_table_ = false, follows_ = true, pedal_ = false, pedal_was_down_ = false;
     int jog_direction_ = 0;
+    int follow_way_ = 0;  // which way the table is on, to bring the tip back into the picture
     double jog_left_mm_ = 0.0;
     Input input_;
     Controls before_;

@@ -7,7 +7,7 @@
 #include "core/errors.h"
 #include "core/log.h"
 #include "hud/hud.h"
-#include "play/earlier_trials.h"
+#include "hud/hud_data.h"
 #include "scene/load_scene.h"
 #include "task/scene_task.h"
 
@@ -15,11 +15,17 @@ namespace cathlab::play {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double frame_s = 1.0 / 60.0;
+// Where a turn is cheap (a GPU), sixty a second; elsewhere they come with the pictures, so that none waits for a turn
+// that shows nothing new.
+constexpr auto plain_turn = std::chrono::microseconds(16667);
+constexpr auto picture_turn = std::chrono::milliseconds(30);
+constexpr auto cheap_turn = std::chrono::milliseconds(4);
+constexpr Uint32 new_picture = SDL_USEREVENT;  // pushed by the painter
 
 WindowOptions window_options(const PlayOptions& options, const Settings& settings) {
     WindowOptions out = options.window;
     out.title = "cathlab";
+    out.alone = options.threaded;
     out.fullscreen = out.fullscreen || settings.view.fullscreen;
     return out;
 }
@@ -37,6 +43,7 @@ PlayApp::PlayApp(PlayOptions options, const AppContext& context)
       window_(window_options(options_, settings_)),
       pads_(data_home()),
       loader_(context),
+      expert_(context),
       choices_(find_choices(context.data_root)) {
     fullscreen_ = settings_.view.fullscreen = settings_.view.fullscreen || options_.window.fullscreen;
     if (!options_.silent) tones_.emplace();
@@ -45,22 +52,21 @@ PlayApp::PlayApp(PlayOptions options, const AppContext& context)
             say(note);
             log::warn(note);
         }
-    if (options_.replay.empty()) {
+    if (!options_.study.empty()) {
+        desk_.emplace(options_.study, options_.participant, context);
+        to_study();
+    } else if (options_.replay.empty()) {
         const SceneSpec scene = load_scene(options_.scene, options_.overlays, context.data_root);
-        setup_ = setup_of(scene);
-        const std::optional<TaskSpec> own = options_.task.empty() ? task_of(scene) : std::nullopt;
-        if (own) {  // the scene sets a task itself
-            choices_.tasks.push_back({own->name, scene.title, "", "", "", *own});
-            setup_.task = own->name;
-        } else if (!options_.task.empty()) {
-            const TaskFile task = find_task(options_.task, context.data_root);
-            if (options_.at_once)
-                setup_.task = task.id;
-            else
-                propose(task, setup_);
+        setup_ = free_play_ = setup_of(scene);
+        if (!options_.task.empty()) {
+            choose_task(find_task(options_.task, context.data_root), setup_);
+        } else if (const auto own = task_of(scene)) {  // the scene sets a task itself
+            const TaskScene task{scene.name, scene.title.empty() ? scene.name : scene.title, scene, *own};
+            std::erase_if(choices_.tasks, [&](const TaskScene& other) { return other.id == task.id; });
+            choices_.tasks.insert(choices_.tasks.begin(), task);
+            choose_task(task, setup_);
         } else if (!options_.at_once && !choices_.tasks.empty()) {
-            for (const TaskFile& task : choices_.tasks)
-                if (task.id == "first-steps") propose(task, setup_);
+            choose_task(choices_.tasks.front(), setup_);
         }
         setup_.difficulty = options_.difficulty.value_or(Difficulty::guided);
     }
@@ -91,6 +97,12 @@ void PlayApp::begin_load(const std::string& folder) {
     request.run = settings_.run;
     request.run.record = settings_.run.record && options_.record;
     request.folder = folder;
+    if (desk_) {
+        request.run.record = true;
+        request.folder = desk_->begin();
+        request.seed = desk_->seed();
+        request.trial = trial_json(*desk_->next());
+    }
     request.replay = options_.replay;
     screen_ = Screen::loading;
     panels_.clear();
@@ -98,13 +110,22 @@ void PlayApp::begin_load(const std::string& folder) {
 }
 
 void PlayApp::begin_session(std::unique_ptr<Simulation> simulation) {
-    simulation->pilot().set_follows(views_allowed());
+    inner_allowed_ = !simulation->watch().task() || simulation->watch().task()->inner_view;
+    simulation->pilot().set_follows(asked_.difficulty != Difficulty::exam);
     if (!simulation->recording_fault().empty()) say(simulation->recording_fault());
+    const std::string instructions = simulation->watch().task() ? simulation->watch().task()->instructions : "";
     sim_ = std::make_unique<SimThread>(std::move(simulation), options_.threaded);
-    painter_ = std::make_unique<Painter>(sim_->shots(), options_.threaded, [] { return make_gl_target(); });
+    painter_ = std::make_unique<Painter>(
+        sim_->shots(), options_.threaded, [] { return make_gl_target(); },
+        [] {
+            SDL_Event wake{};
+            wake.type = new_picture;
+            SDL_PushEvent(&wake);
+        });
     clip_.clear();
     fluoroscopy_ = inner_ = outer_ = kept_ = Image8();
     stamps_.clear();
+    drawn_stamp_ = 0;
     input_.release_keys();
     screen_ = Screen::play;
     panels_.clear();
@@ -114,37 +135,10 @@ void PlayApp::begin_session(std::unique_ptr<Simulation> simulation) {
         seek_to_ = -1;
         return;
     }
-    if (!setup_.task.empty())
-        for (const TaskFile& task : choices_.tasks)
-            if (task.id == setup_.task) say(task.task.instructions, 10.0);
+    if (!instructions.empty()) say(instructions, 10.0);
     say("X-rays: " + settings_.bindings.labels(Control::fluoroscopy, pads_.any()) +
         "   push: " + settings_.bindings.labels(Control::advance, pads_.any()) +
         "   all controls: " + settings_.bindings.labels(Control::help, false));
-}
-
-void PlayApp::make_result(Simulation& simulation, bool reached) {
-    result_ = {};
-    result_.metrics = simulation.metrics();
-    result_.course = simulation.course();
-    result_.dt = simulation.dt();
-    result_.folder = simulation.recording_fault().empty() ? simulation.folder() : "";
-    result_.title = "Free play";
-    for (const TaskFile& task : choices_.tasks)
-        if (task.id == asked_.task) result_.title = task.title;
-    result_.score = simulation.score();
-    if (asked_.task.empty())
-        result_.outcome = "Ended.";
-    else if (reached)
-        result_.outcome = "Reached.";
-    else
-        result_.outcome = simulation.goal().outcome == GoalTracker::Outcome::out_of_time ? "The time is over."
-                                                                                         : "Ended before the goal.";
-    if (!asked_.task.empty() && !result_.folder.empty()) {
-        if (Recorder* recorder = simulation.recorder())
-            recorder->file("result.json", result_json(asked_.task, difficulty_name(asked_.difficulty), reached,
-                                                      result_.score.value_or(0.0), result_.metrics));
-        result_.earlier = earlier_trials(fs::path(result_.folder).parent_path().string(), asked_.task, result_.folder);
-    }
 }
 
 void PlayApp::end_session(bool with_result) {
@@ -154,6 +148,8 @@ void PlayApp::end_session(bool with_result) {
     const bool reached = simulation.goal().outcome == GoalTracker::Outcome::reached;
     if (with_result && options_.replay.empty()) make_result(simulation, reached);
     simulation.finish(true);
+    if (desk_ && with_result) keep_trial(simulation.recording_fault().empty());
+    if (with_result && !asked_.task.empty()) look_for_expert();
     pads_.rumble(0.0, 0.0);
     sim_.reset();
     status_ = {};
@@ -170,6 +166,7 @@ void PlayApp::open(Panel panel) {
         sim_->set_paused(true);
     }
     panels_.push_back(panel);
+    stamps_.clear();
     toasts_.clear();  // what was said about playing would lie over the panel
     ui_feed_.release();
 }
@@ -184,8 +181,15 @@ void PlayApp::follow(Wish wish) {
     switch (wish) {
         case Wish::none: break;
         case Wish::start: begin_load(""); break;
-        case Wish::resume:
-        case Wish::close: go_on(); break;
+        case Wish::close:
+            if (screen_ == Screen::questions && panels_.empty()) {
+                keep_answers();
+                to_study();
+                break;
+            }
+            go_on();
+            break;
+        case Wish::resume: go_on(); break;
         case Wish::save:
             try {
                 save_settings(settings_, options_.settings);
@@ -206,8 +210,30 @@ void PlayApp::follow(Wish wish) {
             break;
         case Wish::settings: open(Panel::settings); break;
         case Wish::help: open(Panel::help); break;
+        case Wish::expert:
+            result_.expert_wanted = false;
+            flying_ = true;
+            expert_.fly(flown_scene_, flown_models_, experts_home(), options_.threaded);
+            break;
+        case Wish::questions:
+            if (result_.folder.empty())
+                to_study();
+            else
+                screen_ = Screen::questions;
+            break;
+        case Wish::skip:
+            questions_.answers.skipped = true;
+            keep_answers();
+            to_study();
+            break;
         case Wish::quit: quit_ = true; break;
     }
+}
+
+void PlayApp::act_on_time(Control control) {
+    if (control == Control::slower) sim_->set_time_scale(std::max(0.1, 0.5 * sim_->time_scale()));
+    if (control == Control::faster) sim_->set_time_scale(std::min(4.0, 2.0 * sim_->time_scale()));
+    if (control == Control::reset && options_.replay.empty()) follow(Wish::again);
 }
 
 void PlayApp::act(Control control) {
@@ -218,10 +244,14 @@ void PlayApp::act(Control control) {
         case Control::single_step:
             if (sim_->paused()) sim_->single_steps(1);
             break;
-        case Control::slower: sim_->set_time_scale(std::max(0.1, 0.5 * sim_->time_scale())); break;
-        case Control::faster: sim_->set_time_scale(std::min(4.0, 2.0 * sim_->time_scale())); break;
+        case Control::slower:
+        case Control::faster:
         case Control::reset:
-            if (options_.replay.empty()) follow(Wish::again);
+            if (desk_) {
+                say("not in a trial of a study");
+                break;
+            }
+            act_on_time(control);
             break;
         case Control::sound:
             settings_.sound.enabled = !settings_.sound.enabled;
@@ -276,11 +306,15 @@ void PlayApp::hands() {
         go_on();
     }
     if (!sim_) return;
-    if (changed && stamps_.size() < 64) stamps_.emplace_back(++stamp_, Clock::now());
+    if (changed && stamps_.size() < 64) stamps_.emplace_back(++stamp_, moved_at_.value_or(Clock::now()));
+    moved_at_.reset();
     sim_->post(controls_, settings_.input, stamp_);
 }
 
 void PlayApp::feed(const SDL_Event& event) {
+    if (event.type == new_picture) return;
+    if (!moved_at_ && event.type >= SDL_KEYDOWN && event.type < SDL_FINGERDOWN)
+        moved_at_ = Clock::now() - std::chrono::milliseconds(SDL_GetTicks() - event.common.timestamp);
     if (event.type == SDL_QUIT) quit_ = true;
     if (event.type == SDL_WINDOWEVENT && event.window.event == SDL_WINDOWEVENT_CLOSE) quit_ = true;
     const std::string note = pads_.feed(event);
@@ -352,7 +386,7 @@ bool PlayApp::frame(double dt) {
         } else {
             log::error(loader_.error());
             if (options_.at_once || !options_.replay.empty()) throw UserError(loader_.error());
-            screen_ = Screen::start;
+            screen_ = desk_ ? Screen::study : Screen::start;
         }
     }
     hands();
@@ -361,6 +395,14 @@ bool PlayApp::frame(double dt) {
         window_.set_fullscreen(fullscreen_);
     }
     say(clip_.report());
+    if (flying_) {
+        result_.expert_note = "an expert is on the way: " + time_text(expert_.flown_s());
+        if (!expert_.busy()) {
+            flying_ = false;
+            result_.expert_note = expert_.fault();
+            if (screen_ == Screen::result) result_.expert = Expert::find(flown_scene_, experts_home());
+        }
+    }
     if (sim_) {
         if (!options_.threaded) sim_->run_for(dt);
         const std::string fault = status_.recording_fault;
@@ -373,6 +415,7 @@ bool PlayApp::frame(double dt) {
     take_pictures();
     if (screen_ == Screen::play && status_.over && options_.replay.empty()) end_session(true);
     if (window_.minimised()) {
+        input_.screens_begin();
         ui_feed_.take();
     } else {
         draw_screens(dt);
@@ -390,14 +433,34 @@ bool PlayApp::frame(double dt) {
     return !quit_;
 }
 
+// What hands do is handed on at once; the screens are drawn again when there is a new picture, or after a while.
+void PlayApp::rest(Clock::time_point begin) {
+    if (screen_ != Screen::play) {
+        std::this_thread::sleep_until(begin + plain_turn);
+        return;
+    }
+    const bool quick = painter_ && layout_.side.width > 0 && side_ != Side::kept;
+    const auto next = begin + (quick && Clock::now() - begin > cheap_turn ? picture_turn : plain_turn);
+    while (!quit_ && screen_ == Screen::play && !painter_->has_quick()) {
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(next - Clock::now()).count();
+        if (left <= 0 || SDL_WaitEventTimeout(nullptr, static_cast<int>(left)) == 0) break;
+        poll();
+        hands();
+    }
+}
+
+bool PlayApp::turn() {
+    const auto begin = Clock::now();
+    const double passed = turned_ ? std::chrono::duration<double>(begin - *turned_).count() : 0.0;
+    turned_ = begin;
+    if (!frame(passed)) return false;
+    turn_cost_.add(std::chrono::duration<double>(Clock::now() - begin).count());
+    rest(begin);
+    return true;
+}
+
 void PlayApp::run() {
-    auto last = Clock::now();
-    for (;;) {
-        const auto begin = Clock::now();
-        if (!frame(std::chrono::duration<double>(begin - last).count())) break;
-        last = begin;
-        const double spent = std::chrono::duration<double>(Clock::now() - begin).count();
-        if (spent < frame_s) std::this_thread::sleep_for(std::chrono::duration<double>(frame_s - spent));
+    while (turn()) {
     }
     end_session(false);
 }

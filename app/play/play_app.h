@@ -16,6 +16,7 @@
 #include "play/painter.h"
 #include "play/screens.h"
 #include "play/settings.h"
+#include "play/study_desk.h"
 #include "play/tones.h"
 #include "play/ui_feed.h"
 #include "play/window.h"
@@ -23,12 +24,14 @@
 namespace cathlab::play {
 
 struct PlayOptions {
-    std::string scene;  ///< a path
+    std::string scene;  ///< a path: played at once where it sets a task, or for free
     std::vector<std::string> overlays;
-    std::string task;      ///< id, "" = free play
+    std::string task;      ///< of scenes/tasks, instead of the scene; "" = none
     bool at_once = false;  ///< without the start screen
     std::string out;       ///< the first session's run folder, "" = a new one in the user's data folder
     std::string replay;    ///< a run folder to be shown, "" = none
+    std::string study;     ///< the folder of a study whose trials are done, "" = none
+    std::string participant;
     std::optional<Difficulty> difficulty;
     WindowOptions window;
     std::string settings;  ///< the file, "" = nowhere
@@ -37,7 +40,7 @@ struct PlayOptions {
     bool silent = false;   ///< no sound device is opened
 };
 
-enum class Screen { start, loading, play, result };
+enum class Screen { start, loading, play, result, study, questions };
 /// What stands beside the fluoroscopy.
 enum class Side { inner, displacement, force, kept };
 
@@ -53,7 +56,9 @@ public:
 
     /// One turn that stands for dt seconds: events, time, pictures, window.  False = the end.
     bool frame(double dt);
-    /// Turns until the end, at most 60 a second.
+    /// A turn in real time, and what is left of a sixtieth of a second, or until there is a new picture.
+    bool turn();
+    /// Turns until the end.
     void run();
 
     /// What the window shows, as a picture.
@@ -72,6 +77,10 @@ public:
     void go_on();
     /// Of the settings: 0 hands, 1 keys, 2 view and sound, 3 recording.
     void select_tab(int tab) { settings_view_.tab = tab; }
+    /// The session ends here, with its result.
+    void end_trial() { follow(Wish::end); }
+    /// Of a result: flies an expert in the same scene where none has been flown.
+    void compare_with_expert() { follow(Wish::expert); }
     void open_hands(bool yes) { hands_open_ = yes; }
     Window& window() { return window_; }
     Settings& settings() { return settings_; }
@@ -81,10 +90,16 @@ public:
     const ScreenLayout& layout() const { return layout_; }
     const std::vector<std::string>& said() const { return said_; }  ///< every toast so far
     const ResultView& result() const { return result_; }
+    QuestionsView& questions() { return questions_; }
     std::string run_folder() const { return loader_.folder(); }
-    /// Time from a hand's command to the picture that shows it, s; the newest, 0 = none yet.
+    /// Time from a hand's command to the window that shows it in a quick view, s; the newest, 0 = none yet.
     double latency_s() const { return latency_s_; }
-    const std::vector<float>& latencies_ms() const { return latencies_ms_; }
+    const Durations& latencies() const { return latencies_; }
+    /// From here on they are counted anew.
+    void forget_latencies() { latencies_ = {}; }
+    void set_side(Side side);
+    /// What a turn took, without its rest.
+    const Durations& turn_cost() const { return turn_cost_; }
 
 private:
     struct Toast {
@@ -96,10 +111,16 @@ private:
     void begin_session(std::unique_ptr<Simulation> simulation);
     void end_session(bool with_result);
     void make_result(Simulation& simulation, bool reached);
+    void keep_trial(bool recorded);
+    void keep_answers();
+    void to_study();
+    void look_for_expert();
+    std::string experts_home() const;
     void poll();
     void feed(const SDL_Event& event);
     void hands();
     void act(Control control);
+    void act_on_time(Control control);
     void follow(Wish wish);
     void lay_out();
     void make_fonts();
@@ -107,7 +128,8 @@ private:
     void draw_screens(double dt);
     void compose();
     void draw_window();
-    void note_latency(std::uint64_t stamp);
+    void note_latency();
+    void rest(Clock::time_point begin);
     void next_side();
     void say(const std::string& text, double shown_s = 5.0);
     void screenshot();
@@ -116,7 +138,9 @@ private:
     std::string new_file(const std::string& stem, const std::string& ending) const;
     void seek(std::int64_t step);
     bool steering() const { return screen_ == Screen::play && panels_.empty(); }
-    bool views_allowed() const { return setup_.difficulty != Difficulty::exam; }
+    bool views_allowed() const { return asked_.difficulty != Difficulty::exam && inner_allowed_; }
+    Paused paused_what() const;
+    StudyView study_view() const;
 
     PlayOptions options_;
     const AppContext& context_;
@@ -126,7 +150,14 @@ private:
     Pads pads_;
     std::optional<Tones> tones_;
     Loader loader_;
+    std::optional<StudyDesk> desk_;
+    TaskScene study_task_;  // of the next trial
+    Expert expert_;
+    SceneSpec flown_scene_;  // of the result that is shown
+    std::shared_ptr<const SceneModels> flown_models_;
+    bool flying_ = false;
     Choices choices_;
+    Setup free_play_;
     Setup setup_, asked_;  // asked_: of the session that goes on
 
     std::unique_ptr<UiContext> ui_;
@@ -138,7 +169,8 @@ private:
     std::uint64_t stamp_ = 0;
     std::vector<std::pair<std::uint64_t, Clock::time_point>> stamps_;  // commands whose picture has not come
     double latency_s_ = 0.0;
-    std::vector<float> latencies_ms_;
+    Durations latencies_, turn_cost_;
+    std::uint64_t drawn_stamp_ = 0;  // of the newest picture of a quick view
 
     Screen screen_ = Screen::start;
     std::vector<Panel> panels_;
@@ -146,7 +178,11 @@ private:
     Side side_ = Side::inner;
     SettingsView settings_view_;
     ResultView result_;
+    QuestionsView questions_;
+    bool inner_allowed_ = true;  // by the task
     double now_s_ = 0.0;
+    std::optional<Clock::time_point> turned_;
+    std::optional<Clock::time_point> moved_at_;  // the first thing that a hand did since the last command
     std::vector<Toast> toasts_;
     std::vector<std::string> said_;
 

@@ -9,8 +9,6 @@
 namespace cathlab::play {
 namespace {
 
-constexpr std::size_t most_latencies = 20000;
-
 const char* side_title(Side side) {
     switch (side) {
         case Side::inner: return "inner view";
@@ -77,18 +75,26 @@ void PlayApp::lay_out() {
     painter_->wish(sizes);
 }
 
-void PlayApp::next_side() {
-    if (!views_allowed()) return;
-    do side_ = side_ == Side::kept ? Side::inner : static_cast<Side>(static_cast<int>(side_) + 1);
-    while (side_ == Side::kept && kept_.rgb.empty());
+void PlayApp::set_side(Side side) {
+    side_ = side;
     const OuterMap map = side_ == Side::force ? OuterMap::force : OuterMap::displacement;
-    sim_->between_steps([&](Simulation& simulation) { simulation.set_outer_map(map); });
+    if (sim_) sim_->between_steps([&](Simulation& simulation) { simulation.set_outer_map(map); });
 }
 
-void PlayApp::note_latency(std::uint64_t stamp) {
-    while (!stamps_.empty() && stamps_.front().first <= stamp) {
+void PlayApp::next_side() {
+    if (!views_allowed()) return;
+    Side side = side_;
+    do side = side == Side::kept ? Side::inner : static_cast<Side>(static_cast<int>(side) + 1);
+    while (side == Side::kept && kept_.rgb.empty());
+    set_side(side);
+}
+
+// After the window was shown: what was commanded until the state that is in it has been answered.
+void PlayApp::note_latency() {
+    if (layout_.side.width == 0 || side_ == Side::kept) stamps_.clear();
+    while (!stamps_.empty() && stamps_.front().first <= drawn_stamp_) {
         latency_s_ = std::chrono::duration<double>(Clock::now() - stamps_.front().second).count();
-        if (latencies_ms_.size() < most_latencies) latencies_ms_.push_back(static_cast<float>(1e3 * latency_s_));
+        latencies_.add(latency_s_);
         stamps_.erase(stamps_.begin());
     }
 }
@@ -101,16 +107,12 @@ void PlayApp::take_pictures() {
         ++fluoroscopy_revision_;
         clip_.add(fluoroscopy_, status_.channels.time_s);
     }
-    bool quick = painter_->take(View::inner, inner_, stamp);
-    if (quick) ++inner_revision_;
-    if (painter_->take(View::outer, outer_, stamp)) {
-        ++outer_revision_;
-        quick = true;
-    }
-    if (quick) note_latency(stamp);
+    if (painter_->take(View::inner, inner_, drawn_stamp_)) ++inner_revision_;
+    if (painter_->take(View::outer, outer_, drawn_stamp_)) ++outer_revision_;
 }
 
 void PlayApp::draw_screens(double dt) {
+    input_.screens_begin();
     ui_->begin(layout_.width, layout_.height, static_cast<float>(dt), ui_feed_.take());
     if (screen_ == Screen::play) {
         PlayView view;
@@ -139,13 +141,18 @@ void PlayApp::draw_screens(double dt) {
     }
     Wish wish = Wish::none;
     switch (panel()) {
-        case Panel::pause: wish = draw_pause(layout_, !options_.replay.empty()); break;
+        case Panel::pause: wish = draw_pause(layout_, paused_what()); break;
         case Panel::settings: wish = draw_settings(settings_, settings_view_, input_, layout_); break;
         case Panel::help: wish = draw_help(settings_.bindings, layout_); break;
         case Panel::none:
-            if (screen_ == Screen::start) wish = draw_start(setup_, choices_, context_.data_root, layout_);
+            if (screen_ == Screen::start) wish = draw_start(setup_, choices_, free_play_, context_.data_root, layout_);
             if (screen_ == Screen::loading) draw_loading(loader_.fraction(), loader_.what(), layout_);
             if (screen_ == Screen::result) wish = draw_result(result_, layout_);
+            if (screen_ == Screen::study) wish = draw_study(study_view(), layout_);
+            if (screen_ == Screen::questions) {
+                wish = draw_questions(questions_, layout_);
+                if (questions_.changed) keep_answers();
+            }
             break;
     }
     if (screen_ != Screen::play) {
@@ -201,6 +208,7 @@ void PlayApp::draw_window() {
     window_.draw(pictures_, lists_);
     if (shot_wanted_) screenshot();
     window_.show();
+    note_latency();
 }
 
 Image8 PlayApp::picture() {

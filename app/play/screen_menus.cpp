@@ -32,16 +32,21 @@ bool choose(const char* label, std::string& value, const std::vector<std::string
     return changed;
 }
 
-void draw_tasks(Setup& setup, const Choices& choices) {
+void draw_tasks(Setup& setup, const Choices& choices, const Setup& free_play) {
     ImGui::TextUnformatted("What to do");
     ImGui::Spacing();
-    for (const TaskFile& task : choices.tasks)
-        if (ImGui::RadioButton(task.title.c_str(), setup.task == task.id)) propose(task, setup);
-    if (ImGui::RadioButton("Free play", setup.task.empty())) setup.task.clear();
+    for (const TaskScene& task : choices.tasks)
+        if (ImGui::RadioButton(task.title.c_str(), setup.task == task.id)) choose_task(task, setup);
+    if (ImGui::RadioButton("Free play", setup.task.empty())) {
+        const Difficulty difficulty = setup.difficulty;
+        setup = free_play;
+        setup.task.clear();
+        setup.difficulty = difficulty;
+    }
     ImGui::Spacing();
     ImGui::PushTextWrapPos(0.0F);
     const auto it = std::find_if(choices.tasks.begin(), choices.tasks.end(),
-                                 [&](const TaskFile& task) { return task.id == setup.task; });
+                                 [&](const TaskScene& task) { return task.id == setup.task; });
     ImGui::TextDisabled("%s", it != choices.tasks.end()
                                   ? it->task.instructions.c_str()
                                   : "Go where you like. There is no score; the metrics are kept.");
@@ -108,7 +113,8 @@ bool menu_button(const char* text, float width_em, bool first) {
     return pressed;
 }
 
-Wish draw_start(Setup& setup, const Choices& choices, const std::string& data_root, const ScreenLayout& layout) {
+Wish draw_start(Setup& setup, const Choices& choices, const Setup& free_play, const std::string& data_root,
+                const ScreenLayout& layout) {
     Wish wish = Wish::none;
     begin_menu("start", layout, 62.0F, 36.0F);
     ImGui::TextUnformatted("cathlab");
@@ -119,7 +125,7 @@ Wish draw_start(Setup& setup, const Choices& choices, const std::string& data_ro
     const float height = ImGui::GetContentRegionAvail().y - buttons;
     const float half = 0.5F * ImGui::GetContentRegionAvail().x - 0.5F * layout.em;
     ImGui::BeginChild("tasks", ImVec2(half, height), false, ImGuiWindowFlags_NavFlattened);
-    draw_tasks(setup, choices);
+    draw_tasks(setup, choices, free_play);
     ImGui::EndChild();
     ImGui::SameLine(0.0F, layout.em);
     ImGui::BeginChild("choices", ImVec2(0.0F, height), false, ImGuiWindowFlags_NavFlattened);
@@ -146,19 +152,25 @@ void draw_loading(double fraction, const std::string& what, const ScreenLayout& 
     end_menu();
 }
 
-Wish draw_pause(const ScreenLayout& layout, bool replay) {
+Wish draw_pause(const ScreenLayout& layout, Paused what) {
     Wish wish = Wish::none;
+    const bool replay = what == Paused::replay, trial = what == Paused::trial;
     begin_menu("pause", layout, 20.0F);
     ImGui::TextUnformatted("Paused");
     ImGui::Separator();
     constexpr float width = 18.0F;
     if (menu_button("Go on", width, true)) wish = Wish::resume;
-    if (!replay && menu_button("Begin again", width)) wish = Wish::again;
-    if (menu_button(replay ? "End the replay" : "End the session", width)) wish = Wish::end;
+    if (what == Paused::session && menu_button("Begin again", width)) wish = Wish::again;
+    if (menu_button(replay ? "End the replay" : trial ? "End the trial" : "End the session", width)) wish = Wish::end;
     if (menu_button("Settings", width)) wish = Wish::settings;
     if (menu_button("Controls", width)) wish = Wish::help;
-    if (menu_button("To the start screen", width)) wish = Wish::to_start;
+    if (what == Paused::session && menu_button("To the start screen", width)) wish = Wish::to_start;
     if (menu_button("Quit", width)) wish = Wish::quit;
+    if (trial) {
+        ImGui::PushTextWrapPos(0.0F);
+        ImGui::TextDisabled("A trial that is ended counts as it is; after Quit it does not count and comes again.");
+        ImGui::PopTextWrapPos();
+    }
     end_menu();
     return wish;
 }

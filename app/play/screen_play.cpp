@@ -79,11 +79,15 @@ void draw_time_line(const PlayView& view, PlayWishes& wishes) {
 
 void draw_device_row(const PlayView& view, PlayWishes& wishes) {
     const Status& s = view.status;
-    if (ImGui::RadioButton("wire", !s.catheter)) wishes.press(Control::wire);
-    ImGui::SameLine();
-    const char* segment = s.segment == 1 ? "catheter, distal" : "catheter, proximal";
-    if (ImGui::RadioButton(s.catheter ? segment : "catheter", s.catheter)) wishes.press(Control::catheter);
-    ImGui::SameLine();
+    if (s.has_wire) {
+        if (ImGui::RadioButton("wire", !s.catheter)) wishes.press(Control::wire);
+        ImGui::SameLine();
+    }
+    if (s.has_catheter) {
+        const char* segment = s.segment == 1 ? "catheter, distal" : "catheter, proximal";
+        if (ImGui::RadioButton(s.catheter ? segment : "catheter", s.catheter)) wishes.press(Control::catheter);
+        ImGui::SameLine();
+    }
     bool jog = s.jog, follows = s.follows;
     if (ImGui::Checkbox("1 mm steps", &jog)) wishes.press(Control::jog);
     ImGui::SameLine();

@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "play/expert.h"
 #include "play/input_state.h"
 #include "play/setup.h"
 #include "play/sim_thread.h"
 #include "render/frame_renderer.h"
+#include "study/questionnaire.h"
 
 namespace cathlab::play {
 
@@ -33,7 +35,10 @@ enum class Wish {
     help,
     quit,
     save,
-    close
+    close,
+    questions,  ///< after a study's trial
+    skip,       ///< them
+    expert      ///< flies one for comparison
 };
 
 /// One column of big buttons begins the window of a menu; its size follows its content.
@@ -42,9 +47,28 @@ void end_menu();
 /// A wide button; `first`: where keys and pad begin.
 bool menu_button(const char* text, float width_em, bool first = false);
 
-Wish draw_start(Setup& setup, const Choices& choices, const std::string& data_root, const ScreenLayout& layout);
+/// free_play: what is laid under it where no task is chosen.
+Wish draw_start(Setup& setup, const Choices& choices, const Setup& free_play, const std::string& data_root,
+                const ScreenLayout& layout);
 void draw_loading(double fraction, const std::string& what, const ScreenLayout& layout);
-Wish draw_pause(const ScreenLayout& layout, bool replay);
+/// What may be done in the pause depends on what is paused.
+enum class Paused { session, replay, trial };
+Wish draw_pause(const ScreenLayout& layout, Paused what);
+
+/// Between two trials of a study.
+struct StudyView {
+    std::string participant, title, instructions;  ///< of the next trial; no title = all are done
+    int done = 0, total = 0;
+};
+Wish draw_study(const StudyView& view, const ScreenLayout& layout);
+
+/// One sheet of questions after another.
+struct QuestionsView {
+    Answers answers;
+    std::size_t sheet = 0;
+    bool changed = false;  ///< since it was last kept
+};
+Wish draw_questions(QuestionsView& view, const ScreenLayout& layout);
 
 /// Buttons of the panel beside the picture that act on a session.
 struct PlayWishes {
@@ -78,8 +102,14 @@ struct ResultView {
     struct Earlier {
         std::string name;
         double score = 0.0, play_time_s = 0.0, force_bar_max = 0.0, fluoroscopy_time_s = 0.0;
+        std::string difficulty = {};
     };
-    std::vector<Earlier> earlier;  ///< newest first
+    std::vector<Earlier> earlier;            ///< newest first
+    bool trial = false;                      ///< of a study: there is no other go at it
+    std::vector<std::vector<Vec3>> vessels;  ///< their middle, for the way
+    std::optional<ExpertCourse> expert;
+    std::string expert_note;     ///< while there is none: why, or how far it is
+    bool expert_wanted = false;  ///< there is a task that an expert could do, and none is on it
 };
 Wish draw_result(const ResultView& view, const ScreenLayout& layout);
 
@@ -95,8 +125,9 @@ struct SettingsView {
 };
 Wish draw_settings(Settings& settings, SettingsView& view, InputState& input, const ScreenLayout& layout);
 
-/// A short line plot of one value a sample, with a line at `mark` where that is in range.
-void draw_plot(const char* label, const std::vector<float>& values, float top, float mark, float width, float height,
-               const std::string& left, const std::string& right);
+/// A short line plot of one value a sample, with a line at `mark` where that is in range; `other` fainter behind it, on
+/// the same time.
+void draw_plot(const char* label, const std::vector<float>& values, const std::vector<float>& other, float top,
+               float mark, float width, float height, const std::string& left, const std::string& right);
 
 }  // namespace cathlab::play

@@ -41,7 +41,7 @@ struct RunSettings {
     bool record = true;
     std::string folder;        ///< of all recordings; "" = XDG_DATA_HOME/cathlab/runs
     std::string participant;   ///< pseudonym for trial.json; "" = nobody in particular
-    std::int64_t threads = 2;  ///< of the step
+    std::int64_t threads = 1;  ///< of the step: with one it waits for no other thread
 };
 
 struct Settings {

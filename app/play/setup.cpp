@@ -58,11 +58,21 @@ std::string difficulty_name(Difficulty difficulty) {
 
 std::string difficulty_text(Difficulty difficulty) {
     switch (difficulty) {
-        case Difficulty::guided: return "the goal is marked, with inner view and a table that follows";
+        case Difficulty::guided:
+            return "the goal is marked, with inner view and a table that follows; force limits a quarter higher";
         case Difficulty::standard: return "inner view and a table that follows; the goal is not marked";
         case Difficulty::exam: break;
     }
-    return "fluoroscopy alone, as in the cath lab";
+    return "fluoroscopy alone, as in the cath lab; force limits a quarter lower";
+}
+
+double force_limit_share(Difficulty difficulty) {
+    switch (difficulty) {
+        case Difficulty::guided: return 1.25;
+        case Difficulty::standard: return 1.0;
+        case Difficulty::exam: break;
+    }
+    return 0.75;
 }
 
 std::string spoken(std::string name) {
@@ -116,11 +126,11 @@ Setup setup_of(const SceneSpec& scene) {
     return out;
 }
 
-void propose(const TaskFile& task, Setup& setup) {
+void choose_task(const TaskScene& task, Setup& setup) {
+    const Difficulty difficulty = setup.difficulty;
+    setup = setup_of(task.scene);
     setup.task = task.id;
-    if (!task.entry.empty()) setup.entry = task.entry;
-    if (!task.wire.empty()) setup.wire = task.wire;
-    if (!task.catheter.empty()) setup.catheter = task.catheter == "none" ? "" : task.catheter;
+    setup.difficulty = difficulty;
 }
 
 std::string setup_toml(const Setup& setup, const SceneSpec& scene) {
@@ -142,6 +152,8 @@ std::string setup_toml(const Setup& setup, const SceneSpec& scene) {
         if (wanted != switched_on(scene, name))
             out += "\n[effects." + name + "]\nenabled = " + (wanted ? "true" : "false") + "\n";
     }
+    if (const double share = force_limit_share(setup.difficulty); share != 1.0)
+        out += "\n[wall]\nforce_limit_share = " + number(share * scene.wall.force_limit_share) + "\n";
     return out.empty() ? "" : "# What was chosen on the start screen.\n" + out;
 }
 

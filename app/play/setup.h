@@ -14,6 +14,8 @@ enum class Difficulty { guided, standard, exam };
 std::string difficulty_name(Difficulty difficulty);
 /// What it means, in one line.
 std::string difficulty_text(Difficulty difficulty);
+/// Of the force limits of the wall.
+double force_limit_share(Difficulty difficulty);
 
 struct Setup {
     std::string scene;  ///< path of the scene that is laid under
@@ -29,7 +31,7 @@ struct Setup {
 
 /// What there is to choose from.
 struct Choices {
-    std::vector<TaskFile> tasks;
+    std::vector<TaskScene> tasks;
     std::vector<std::string> anatomies, wires, catheters, effects;
     std::vector<std::string> faults;
 };
@@ -39,8 +41,8 @@ std::vector<std::string> entries_of(const std::string& anatomy, const std::strin
 
 /// What the scene itself says.
 Setup setup_of(const SceneSpec& scene);
-/// Takes what a task proposes.
-void propose(const TaskFile& task, Setup& setup);
+/// Lays a task under it; how much help there is stays.
+void choose_task(const TaskScene& task, Setup& setup);
 
 /// The overlay (TOML).  Only what differs from the scene stands in it, so that a choice that was not made changes
 /// nothing.  "" where nothing differs.

@@ -21,21 +21,6 @@ Clock::duration of_seconds(double s) {
 
 }  // namespace
 
-void Lateness::add(double late_s) {
-    const double bin = std::clamp(late_s / bin_s, 0.0, static_cast<double>(bins_.size() - 1));
-    ++bins_[static_cast<std::size_t>(bin)];
-    ++count_;
-}
-
-double Lateness::quantile(double share) const {
-    std::uint64_t sum = 0;
-    for (std::size_t i = 0; i < bins_.size(); ++i) {
-        sum += bins_[i];
-        if (static_cast<double>(sum) >= share * static_cast<double>(count_)) return static_cast<double>(i + 1) * bin_s;
-    }
-    return 0.0;
-}
-
 SimThread::SimThread(std::unique_ptr<Simulation> simulation, bool threaded) : simulation_(std::move(simulation)) {
     due_ = measured_since_ = Clock::now();
     publish();
@@ -59,7 +44,9 @@ void SimThread::post(const Controls& controls, const InputSettings& settings, st
     for (std::size_t i = 0; i < control_count; ++i)
         if (std::fabs(controls.value[i]) > std::fabs(pulse_.value[i])) pulse_.value[i] = controls.value[i];
     settings_ = settings;
+    if (stamp_ == stamp) return;
     stamp_ = stamp;
+    moved_.notify_one();
 }
 
 void SimThread::set_paused(bool paused) {
@@ -100,6 +87,7 @@ bool SimThread::tick() {
             pulse_.value[i] = 0.0;
         }
         settings = settings_;
+        in_step_ = stamp_;
     }
     const std::lock_guard lock(world_);
     try {
@@ -112,16 +100,26 @@ bool SimThread::tick() {
 
 void SimThread::publish() {
     const std::lock_guard world(world_);
-    Shot& shot = shots_.back();
+    Shot& shot = shots_.newest.back();
     simulation_->describe(shot.picture);
-    shot.pulses = simulation_->pulses();
+    const bool exposed = simulation_->pulses() != exposed_ && shot.picture.beam_on;
+    if (exposed) {
+        exposed_ = simulation_->pulses();
+        simulation_->describe(shots_.exposures.back().picture);
+    }
     const std::lock_guard lock(mutex_);
-    shot.stamp = stamp_;
+    shot.stamp = in_step_;
+    if (exposed) {
+        shots_.exposures.back().stamp = in_step_;
+        shots_.exposures.publish();
+    }
     status_.channels = simulation_->channels();
     simulation_->fill_panels(status_.panels);
     status_.goal = simulation_->goal();
     status_.view = shot.picture.view;
     const Pilot& pilot = simulation_->pilot();
+    status_.has_wire = pilot.has_wire();
+    status_.has_catheter = pilot.has_catheter();
     status_.catheter = pilot.catheter();
     status_.segment = pilot.segment();
     status_.jog = pilot.jog();
@@ -136,7 +134,7 @@ void SimThread::publish() {
     status_.behind = slow_seconds_ >= 2;
     status_.recording_fault = simulation_->recording_fault();
     status_.fault = fault_;
-    shots_.publish();
+    shots_.newest.publish();
 }
 
 void SimThread::measure(double simulated_s) {
@@ -175,19 +173,25 @@ void SimThread::loop() {
             continue;
         }
         const auto now = Clock::now();
-        if (now < due_) {
-            std::this_thread::sleep_until(std::min(due_, now + of_seconds(0.05)));
-            continue;
-        }
+        const auto interval = of_seconds(simulation_->dt() / time_scale_);
         {
-            const std::lock_guard lock(mutex_);
-            lateness_.add(seconds(now - due_));
+            // A hand that moves gets its step at once, at most one step ahead of time; the pace stays what it is.
+            std::unique_lock lock(mutex_);
+            const bool moved = stamp_ != in_step_;
+            const auto begins = moved ? due_ - interval : due_;
+            if (now < begins) {
+                moved_.wait_until(lock, std::min(begins, now + of_seconds(0.05)),
+                                  [&] { return !moved && stamp_ != in_step_; });
+                continue;
+            }
+            pace_.late.add(std::max(0.0, seconds(now - due_)));
         }
-        const double interval = simulation_->dt() / time_scale_;
-        due_ += of_seconds(interval);
+        due_ += interval;
         if (now - due_ > of_seconds(most_debt_s)) due_ = now;
         if (tick()) measure(simulation_->dt());
         publish();
+        const std::lock_guard lock(mutex_);
+        pace_.cost.add(seconds(Clock::now() - now));
     }
     simulation_->flush();
 }
@@ -197,9 +201,9 @@ Status SimThread::status() const {
     return status_;
 }
 
-Lateness SimThread::lateness() const {
+SimThread::Pace SimThread::pace() const {
     const std::lock_guard lock(mutex_);
-    return lateness_;
+    return pace_;
 }
 
 void SimThread::between_steps(const std::function<void(Simulation&)>& work) {

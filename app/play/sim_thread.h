@@ -1,9 +1,9 @@
 // The simulation at its own pace: a thread of its own, or driven step by step by whoever holds it (tests).
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "play/durations.h"
 #include "play/simulation.h"
 #include "play/triple_buffer.h"
 
@@ -18,11 +19,15 @@ namespace cathlab::play {
 
 using Clock = std::chrono::steady_clock;
 
-/// What the painter gets: the newest state as a description, and how many X-ray pulses there have been.
+/// What the painter gets: a state as a description.
 struct Shot {
     FrameDescription picture;
-    std::uint64_t pulses = 0;
     std::uint64_t stamp = 0;  ///< of the newest hands' command that is in it
+};
+/// For two readers, so that a slow one keeps nothing from the other: every state, and those that an X-ray pulse
+/// exposed.
+struct Shots {
+    TripleBuffer<Shot> newest, exposures;
 };
 
 /// What the screens show, copied whole.
@@ -31,6 +36,7 @@ struct Status {
     HudData panels;
     GoalView goal;
     CArmView view;
+    bool has_wire = false, has_catheter = false;
     bool catheter = false, jog = false, moves_table = false, follows = false, paused = false, over = false;
     int segment = 1;
     std::int64_t steps = 0, replay_steps = 0;
@@ -38,20 +44,6 @@ struct Status {
     double real_time_factor = 0.0;  ///< simulated over passed time, of about the last second; 0 = not known
     bool behind = false;            ///< the machine cannot keep the pace that is asked for
     std::string recording_fault, fault;
-};
-
-/// How late steps began, against their due time, while time ran.
-class Lateness {
-public:
-    void add(double late_s);
-    std::uint64_t count() const { return count_; }
-    /// The value that this share of the steps did not pass, s; to 0.1 ms.
-    double quantile(double share) const;
-
-private:
-    static constexpr double bin_s = 1e-4;
-    std::array<std::uint64_t, 5000> bins_{};
-    std::uint64_t count_ = 0;
 };
 
 class SimThread {
@@ -78,8 +70,12 @@ public:
     void run_for(double seconds);
 
     Status status() const;
-    TripleBuffer<Shot>& shots() { return shots_; }
-    Lateness lateness() const;
+    Shots& shots() { return shots_; }
+    /// While time ran: how late steps began, against their due time, and what a step took with its description.
+    struct Pace {
+        Durations late, cost;
+    };
+    Pace pace() const;
 
     /// Stops time for good; then the simulation may be read.
     Simulation& stop();
@@ -93,14 +89,16 @@ private:
     void measure(double simulated_s);
 
     std::unique_ptr<Simulation> simulation_;
-    TripleBuffer<Shot> shots_;
+    Shots shots_;
+    std::uint64_t exposed_ = 0;  // the last pulse that was handed over
 
     mutable std::mutex mutex_;  // of what follows
+    std::condition_variable moved_;
     Controls controls_, pulse_;
     InputSettings settings_;
-    std::uint64_t stamp_ = 0;
+    std::uint64_t stamp_ = 0, in_step_ = 0;  // the newest command, and that of the last step
     Status status_;
-    Lateness lateness_;
+    Pace pace_;
 
     std::mutex world_;  // held during a step
     std::atomic<bool> paused_ = false, stopping_ = false;

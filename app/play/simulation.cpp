@@ -20,22 +20,28 @@ Vec3 isocentre_of(Session& session) {
 
 }  // namespace
 
-Simulation::Simulation(SimulationOptions options, const SceneModels& models, const AppContext& context)
+void Course::add(const Channels& c, bool wire) {
+    force_bar.push_back(static_cast<float>(c.force_bar));
+    constexpr double onward_mm = 0.5;
+    const Vec3 now = wire ? Vec3(c.wire_tip_x_mm, c.wire_tip_y_mm, c.wire_tip_z_mm)
+                          : Vec3(c.catheter_tip_x_mm, c.catheter_tip_y_mm, c.catheter_tip_z_mm);
+    if (tip.empty() || (now - tip.back()).norm() > onward_mm) tip.push_back(now);
+}
+
+Simulation::Simulation(SimulationOptions options, std::shared_ptr<const SceneModels> models, const AppContext& context)
     : options_(std::move(options)),
-      session_(options_.scene, models, options_.replay ? options_.replay->manifest.seed : options_.scene.seed,
+      models_(std::move(models)),
+      session_(options_.scene, *models_, options_.replay ? options_.replay->manifest.seed : options_.scene.seed,
                options_.threads),
-      pilot_(options_.scene, isocentre_of(session_)) {
+      pilot_(options_.scene, isocentre_of(session_)),
+      watch_(session_.world(), options_.task) {
     if (options_.replay && session_.anatomy_hash() != options_.replay->manifest.anatomy_hash)
         throw UserError(options_.replay->folder + ": the anatomy is built otherwise than when this run was recorded");
     if (options_.task) {
-        goal_point_.emplace(session_.world(), *options_.task);
-        tracker_.emplace(*options_.task);
-        metrics_.set_task(*session_.world().first<Shared<AnatomyModel>>(), options_.task->device,
-                          options_.task->landmark);
         goal_.present = true;
         goal_.radius_mm = options_.task->radius_mm;
         goal_.hold_s = options_.task->hold_s;
-        goal_.position = goal_point_->now(session_.world());
+        goal_.position = watch_.goal(session_.world());
         goal_.left_s = options_.task->time_limit_s;
     }
     input_ = session_.base_input();
@@ -63,34 +69,37 @@ void Simulation::step(const Controls& controls, const InputSettings& settings) {
     if (!std::isfinite(c.wire_tip_x_mm + c.catheter_tip_x_mm + c.wall_displacement_max_mm))
         throw std::runtime_error("its numbers are no longer finite; begin again");
     if (c.beam_on > 0.5 && pulse_in_step(before, session_.dt(), options_.scene.c_arm.frame_rate)) ++pulses_;
-    metrics_.add(c, session_.dt());
-    course_.force_bar.push_back(static_cast<float>(c.force_bar));
-    course_.force_n.push_back(static_cast<float>((c.wire_force_mn + c.catheter_force_mn) / units::newton));
-    course_.tip.push_back(input_.device < 0.5 ? Vec3(c.wire_tip_x_mm, c.wire_tip_y_mm, c.wire_tip_z_mm)
-                                              : Vec3(c.catheter_tip_x_mm, c.catheter_tip_y_mm, c.catheter_tip_z_mm));
+    watch_.add(session_.world(), c, session_.dt());
+    course_.add(c, options_.task ? options_.task->device == "wire" : input_.device < 0.5);
     ++steps_;
-    if (tracker_) follow_goal();
+    if (goal_.present) follow_goal();
 }
 
 void Simulation::follow_goal() {
-    goal_.position = goal_point_->now(session_.world());
-    tracker_->add(channels(), goal_.position, session_.dt());
-    goal_.inside = tracker_->inside();
-    goal_.distance_mm = tracker_->distance_mm();
-    goal_.held_s = tracker_->held_s();
-    goal_.outcome = tracker_->outcome();
-    goal_.left_s = tracker_->spec().time_limit_s - static_cast<double>(steps_) * session_.dt();
+    const GoalTracker& tracker = *watch_.tracker();
+    goal_.position = watch_.goal(session_.world());
+    goal_.inside = tracker.inside();
+    goal_.distance_mm = tracker.distance_mm();
+    goal_.held_s = tracker.held_s();
+    goal_.outcome = tracker.outcome();
+    goal_.left_s = tracker.spec().time_limit_s - static_cast<double>(steps_) * session_.dt();
 }
 
 bool Simulation::over() const {
-    if (options_.replay) return steps_ >= options_.replay->steps;
-    return tracker_ && tracker_->outcome() != GoalTracker::Outcome::open;
+    return options_.replay ? steps_ >= options_.replay->steps : watch_.over();
 }
 
 std::optional<double> Simulation::score() const {
-    if (!tracker_) return std::nullopt;
-    if (tracker_->outcome() != GoalTracker::Outcome::reached) return 0.0;
-    return cathlab::score(metrics_.result(), tracker_->spec().criteria);
+    return goal_.present ? std::optional(watch_.score()) : std::nullopt;
+}
+
+std::vector<std::vector<Vec3>> Simulation::vessels() {
+    const CentrelineGraph& graph = (*session_.world().first<Shared<AnatomyModel>>())->centreline;
+    std::vector<std::vector<Vec3>> out;
+    for (const auto& [a, b] : graph.edges)
+        out.push_back(
+            {graph.nodes[static_cast<std::size_t>(a)].position, graph.nodes[static_cast<std::size_t>(b)].position});
+    return out;
 }
 
 void Simulation::describe(FrameDescription& frame) {
@@ -114,9 +123,13 @@ void Simulation::flush() {
 void Simulation::finish(bool complete) {
     if (finished_ || !recorder_) return;
     finished_ = true;
-    const Metrics metrics = metrics_.result();
+    const Metrics metrics = watch_.metrics();
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin_;
-    recorder_->finish(complete, wall.count(), metrics_.empty() ? nullptr : &metrics);
+    if (!watch_.empty()) {
+        recorder_->file("regions.csv", watch_.forces().regions_csv());
+        recorder_->file("force-map.csv", force_map_csv(watch_.forces().unrolled()));
+    }
+    recorder_->finish(complete, wall.count(), watch_.empty() ? nullptr : &metrics);
 }
 
 }  // namespace cathlab::play

@@ -14,9 +14,9 @@
 #include "play/pilot.h"
 #include "play/recorder.h"
 #include "record/run_reader.h"
+#include "scene/build_world.h"
 #include "session.h"
-#include "task/metrics.h"
-#include "task/scene_task.h"
+#include "task_watch.h"
 
 namespace cathlab::play {
 
@@ -37,17 +37,19 @@ struct GoalView {
     GoalTracker::Outcome outcome = GoalTracker::Outcome::open;
 };
 
-/// One sample a step, for the result's plots.
+/// For the result's plots.
 struct Course {
-    std::vector<float> force_bar;  ///< 1 = the limit
-    std::vector<float> force_n;
-    std::vector<Vec3> tip;
+    std::vector<float> force_bar;  ///< one a step; 1 = the limit
+    std::vector<Vec3> tip;         ///< wherever it has moved on
+
+    /// wire: whose tip goes on the path.
+    void add(const Channels& c, bool wire);
 };
 
 class Simulation {
 public:
     /// Throws UserError.  A recording that cannot be begun is said in recording_fault() and the session goes on.
-    Simulation(SimulationOptions options, const SceneModels& models, const AppContext& context);
+    Simulation(SimulationOptions options, std::shared_ptr<const SceneModels> models, const AppContext& context);
     ~Simulation();
 
     /// One step under the hands' command, or the next of the replay.
@@ -64,9 +66,14 @@ public:
     std::int64_t replay_steps() const { return options_.replay ? options_.replay->steps : 0; }
     double dt() const { return session_.dt(); }
     const SceneSpec& scene() const { return options_.scene; }
+    /// What may build the same world again.
+    const std::shared_ptr<const SceneModels>& models() const { return models_; }
+    /// The middle of the vessels, as lines.
+    std::vector<std::vector<Vec3>> vessels();
     const GoalView& goal() const { return goal_; }
     const Course& course() const { return course_; }
-    Metrics metrics() const { return metrics_.result(); }
+    const TaskWatch& watch() const { return watch_; }
+    Metrics metrics() const { return watch_.metrics(); }
     std::optional<double> score() const;
     /// X-ray pulses so far: a new fluoroscopy is due with each.
     std::uint64_t pulses() const { return pulses_; }
@@ -89,14 +96,13 @@ private:
     void follow_goal();
 
     SimulationOptions options_;
+    std::shared_ptr<const SceneModels> models_;
     Session session_;
     Pilot pilot_;
     std::optional<Recorder> recorder_;
     std::string fault_;
-    std::optional<GoalTracker> tracker_;
-    std::optional<GoalPoint> goal_point_;
+    TaskWatch watch_;
     GoalView goal_;
-    MetricsAccumulator metrics_;
     Course course_;
     MessageLines messages_;
     FrameMemory memory_;

@@ -1,11 +1,14 @@
 #include "play/tour.h"
 
 #include <SDL.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
 
 #include "core/errors.h"
+#include "study/protocol.h"
+#include "study/questionnaire.h"
 
 namespace cathlab::play {
 namespace {
@@ -47,16 +50,9 @@ void send_key(SDL_Scancode key, bool down) {
     SDL_PushEvent(&event);
 }
 
-void tour(PlayOptions options, const AppContext& context, const std::string& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw UserError("cannot make the folder '" + folder + "': " + error.message());
-    SDL_SetHint(SDL_HINT_VIDEODRIVER, "dummy");
-    options.window.plain = true;
-    options.threaded = false;
-    options.silent = true;
-    options.record = false;
-    options.settings.clear();
+namespace {
+
+void tour_of_play(const PlayOptions& options, const AppContext& context, const std::string& folder) {
     PlayApp app(options, context);
     Tour tour(app, folder);
     tour.keep("start");
@@ -97,7 +93,60 @@ void tour(PlayOptions options, const AppContext& context, const std::string& fol
         tour.frames(1);
         if (app.simulation() != nullptr && app.simulation()->status().goal.inside) send_key(SDL_SCANCODE_W, false);
     }
+    app.compare_with_expert();
     tour.keep("result");
+}
+
+// A trial of a study that is there for the pictures alone.
+void tour_of_a_study(PlayOptions options, const AppContext& context, const std::string& folder) {
+    namespace fs = std::filesystem;
+    const fs::path study = fs::temp_directory_path() / ("cathlab-tour-" + std::to_string(::getpid()));
+    Protocol protocol;
+    protocol.name = "tour";
+    protocol.groups = {"novice"};
+    protocol.tasks = {"first-steps", "a"};
+    write_study(study.string(), protocol);
+    add_participant(study.string(), protocol, {"P01", "novice", false});
+    options.study = study.string();
+    options.participant = "P01";
+    {
+        PlayApp app(options, context);
+        Tour tour(app, folder);
+        tour.keep("study");
+        tour.tap(SDL_SCANCODE_RETURN);
+        while (app.screen() == Screen::loading || app.screen() == Screen::study) tour.frames(1);
+        tour.frames(20);
+        tour.tap(SDL_SCANCODE_ESCAPE);
+        tour.keep("trial-pause");
+        app.end_trial();
+        tour.frames(2);
+        tour.tap(SDL_SCANCODE_RETURN);
+        for (const QuestionSheet& sheet : question_sheets()) {
+            auto& answers = app.questions().answers.sheets[app.questions().sheet];
+            for (std::size_t q = 0; q + 2 < answers.size(); ++q)
+                answers[q] = sheet.least + sheet.step * static_cast<int>((3 + q) % 5);
+            tour.keep("questions-" + std::string(sheet.id));
+            if (&sheet != &question_sheets().back()) ++app.questions().sheet;
+        }
+    }
+    std::error_code error;
+    fs::remove_all(study, error);
+}
+
+}  // namespace
+
+void tour(PlayOptions options, const AppContext& context, const std::string& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw UserError("cannot make the folder '" + folder + "': " + error.message());
+    SDL_SetHint(SDL_HINT_VIDEODRIVER, "dummy");
+    options.window.plain = true;
+    options.threaded = false;
+    options.silent = true;
+    options.record = false;
+    options.settings.clear();
+    tour_of_play(options, context, folder);
+    tour_of_a_study(options, context, folder);
 }
 
 }  // namespace cathlab::play

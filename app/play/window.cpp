@@ -12,11 +12,13 @@ namespace {
 // The window's own GL context.
 class SdlTarget final : public GlTarget {
 public:
-    SdlTarget(SDL_Window* window, SDL_GLContext context) : window_(window), context_(context) {}
+    SdlTarget(SDL_Window* window, SDL_GLContext context, bool alone)
+        : window_(window), context_(context), alone_(alone) {}
     ~SdlTarget() override { SDL_GL_DeleteContext(context_); }
     SdlTarget(const SdlTarget&) = delete;
     SdlTarget& operator=(const SdlTarget&) = delete;
     void make_current() override {
+        if (alone_ && SDL_GL_GetCurrentContext() == context_) return;
         // SDL leaves out what it believes to be so already; but an off-screen context may have come between on this
         // thread, of which it does not know.
         SDL_GL_MakeCurrent(window_, nullptr);
@@ -29,6 +31,7 @@ public:
 private:
     SDL_Window* window_;
     SDL_GLContext context_;
+    bool alone_;
 };
 
 std::string no_display() {
@@ -63,7 +66,8 @@ struct Window::Impl {
         try {
             SDL_GLContext context = SDL_GL_CreateContext(window);
             if (context == nullptr) throw UserError(SDL_GetError());
-            surface = std::make_unique<WindowSurface>(std::make_unique<SdlTarget>(window, context), false);
+            surface =
+                std::make_unique<WindowSurface>(std::make_unique<SdlTarget>(window, context, options.alone), false);
             SDL_GL_SetSwapInterval(1);
             return true;
         } catch (const UserError& error) {

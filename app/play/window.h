@@ -16,6 +16,7 @@ struct WindowOptions {
     int height = 720;
     bool fullscreen = false;
     bool plain = false;  ///< without OpenGL, as on a machine that has none
+    bool alone = false;  ///< no other GL context is ever current on this thread
 };
 
 class Window {

@@ -59,6 +59,7 @@ struct SceneWall {
     double max_speed_mm_s = 150.0;
     std::string precision = "float";  ///< of the cluster fits; positions are double in either
     std::optional<double> friction;   ///< of every device against the wall; empty = each device's own
+    double force_limit_share = 1.0;   ///< of the force limit of every region
     std::vector<SceneWallRegion> regions;
 };
 

@@ -88,6 +88,8 @@ Table<SceneWall> wall_table() {
                 "rate at which motion against the clusters dies")
         .number("friction", &SceneWall::friction, "1", {0, 2},
                 "Coulomb coefficient of every device against the wall, instead of the device files' own")
+        .number("force_limit_share", &SceneWall::force_limit_share, "1", {0.1, 10},
+                "of the force limit of every region: a harder or an easier task")
         .tables("region", &SceneWall::regions, region);
 }
 

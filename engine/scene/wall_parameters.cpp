@@ -49,6 +49,7 @@ std::vector<RegionWall> apply_wall(const SceneWall& wall, std::vector<Region>& r
         own.young_kpa = wanted.young_kpa;
         own.poisson = wanted.poisson;
     }
+    for (Region& region : regions) region.force_limit_n *= wall.force_limit_share;
     return out;
 }
 

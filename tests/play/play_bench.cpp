@@ -23,15 +23,28 @@ void PlayBench::SetUp() {
                                                       "\n[[landmark]]\nname = \"middle\"\nvessel = \"trunk\"\n"
                                                       "at = \"place\"\nplace_mm = 32.0\n");
     std::filesystem::copy(source + "/assets/devices", folder.path("data/assets/devices"));
-    folder.write(
-        "data/assets/tasks/short.toml",
-        "title = \"Into the trunk\"\ninstructions = \"Push.\"\nlandmark = \"middle\"\nradius_mm = 14.0\n"
-        "hold_s = 0.5\ntime_limit_s = 20.0\n[[criterion]]\nmetric = \"play_time_s\"\nfull = 2.0\nnone = 20.0\n");
-    folder.write("data/assets/tasks/first-steps.toml",
-                 "title = \"Wait\"\nlandmark = \"middle\"\nradius_mm = 1.0\nhold_s = 5.0\ntime_limit_s = 1.0\n");
     std::string scene = text_of(source + "/scenes/rigs/fork.toml");
     scene.replace(scene.find("fork-anatomy.toml"), 17, "fork");
     folder.write("data/scenes/small.toml", scene);
+    const std::string name = "name = \"";
+    const auto named = [&](const std::string& as) {
+        std::string out = scene;
+        const auto at = out.find(name) + name.size();
+        return out.replace(at, out.find('"', at) - at, as);
+    };
+    const auto to_the_middle = [&](const std::string& as, const std::string& region) {
+        folder.write("data/scenes/tasks/" + as + ".toml",
+                     named(as) + "\n[task]\ninstructions = \"Push.\"\nlandmark = \"middle\"\n" + region +
+                         "time_limit_s = 20.0\n[[task.criterion]]\nmetric = \"play_time_s\"\nfull = 2.0\n"
+                         "none = 20.0\n");
+    };
+    to_the_middle("short", "radius_mm = 14.0\nhold_s = 0.5\n");
+    to_the_middle("wide", "radius_mm = 20.0\nhold_s = 0.4\n");  // whoever has come there stays there
+    folder.write("data/scenes/tasks/wait.toml",
+                 named("wait") +
+                     "\n[task]\ninstructions = \"Wait.\"\nlandmark = \"middle\"\nradius_mm = 1.0\nhold_s = 50.0\n"
+                     "time_limit_s = 30.0\ninner_view = false\n[[task.criterion]]\nmetric = \"play_time_s\"\n"
+                     "full = 2.0\nnone = 20.0\n");
 }
 
 void PlayBench::TearDown() {

@@ -218,5 +218,56 @@ TEST_F(Trainer, AFullDiskEndsTheRecordingAndNotTheSession) {
     EXPECT_EQ(status().steps, before + 80);
 }
 
+TEST_F(Trainer, AnAnatomyThatCannotBeBuiltLeavesTheStartScreenWithTheReason) {
+    folder.write("data/assets/anatomy/broken.toml", "schema = 1\nname = \"broken\"\n");
+    start(false);
+    frames(3);
+    app->setup().anatomy = "broken";
+    tap(SDL_SCANCODE_RETURN);
+    leave(Screen::loading, 5);
+    frames(2);
+    EXPECT_TRUE(app->screen() == Screen::start);
+    EXPECT_TRUE(heard(*app, "broken"));
+    app->setup().anatomy = "fork";  // and another one plays
+    tap(SDL_SCANCODE_RETURN);
+    EXPECT_TRUE(leave(Screen::start, 5));
+    frames(3);
+    EXPECT_TRUE(app->screen() == Screen::play);
+}
+
+TEST_F(Trainer, DifficultyMovesTheForceLimitsAndTheViewsAndTheRunIsScoredByThem) {
+    const auto begin = [&](Difficulty difficulty) {
+        start(false, "wide");
+        app->setup().difficulty = difficulty;
+        frames(3);
+        tap(SDL_SCANCODE_RETURN);
+        ASSERT_TRUE(leave(Screen::start, 5));
+        frames(3);
+        ASSERT_TRUE(app->screen() == Screen::play);
+    };
+    double limit[3] = {};
+    for (const Difficulty difficulty : {Difficulty::guided, Difficulty::standard, Difficulty::exam}) {
+        begin(difficulty);
+        limit[static_cast<int>(difficulty)] = app->simulation()->stop().scene().wall.force_limit_share;
+        EXPECT_EQ(app->side() == Side::kept, difficulty == Difficulty::exam);
+    }
+    EXPECT_EQ(limit[0], 1.25);
+    EXPECT_EQ(limit[1], 1.0);
+    EXPECT_EQ(limit[2], 0.75);
+    begin(Difficulty::exam);
+    key(SDL_SCANCODE_W, true);
+    for (int i = 0; i < 500 && app->screen() == Screen::play; ++i) {
+        frames(1);
+        if (app->simulation() != nullptr && status().goal.inside) key(SDL_SCANCODE_W, false);
+    }
+    ASSERT_TRUE(app->screen() == Screen::result);
+    frames(2);
+    const Outcome score = call("score " + app->result().folder, "CATHLAB_DATA_DIR=" + context.data_root);
+    EXPECT_EQ(score.code, 0) << score.text;
+    char text[32];
+    std::snprintf(text, sizeof text, "score %.1f of 100", app->result().score.value_or(-1.0));
+    EXPECT_NE(score.text.find(text), std::string::npos) << score.text;
+}
+
 }  // namespace
 }  // namespace cathlab::play

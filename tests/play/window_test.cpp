@@ -1,5 +1,6 @@
 // What the window shows, and what becomes of it when it is pulled about.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 
@@ -112,6 +113,43 @@ TEST_F(TrainerWindow, CanBeTinyHugeAndMinimised) {
     const auto steps = status().steps;
     frames(5);
     EXPECT_EQ(status().steps, steps + 5);
+}
+
+TEST_F(TrainerWindow, WithoutOpenGlInTheWindowItIsDrawnOffScreenAndSaysSo) {
+    SDL_SetHint(SDL_HINT_VIDEODRIVER, "dummy");
+    PlayOptions wanted = options();
+    wanted.window.plain = false;  // it asks for OpenGL, which SDL's dummy display has not
+    wanted.at_once = true;
+    app = std::make_unique<PlayApp>(wanted, context);
+    frames(3);
+    EXPECT_NE(app->window().note().find("off-screen"), std::string::npos) << app->window().note();
+    EXPECT_TRUE(std::any_of(app->said().begin(), app->said().end(),
+                            [](const std::string& text) { return text.find("no OpenGL") != std::string::npos; }));
+    EXPECT_TRUE(app->screen() == Screen::play);
+}
+
+TEST_F(TrainerWindow, ASlowFluoroscopyKeepsTheQuickViewsAndTheHandNotWaiting) {
+    SDL_SetHint(SDL_HINT_VIDEODRIVER, "dummy");
+    PlayOptions wanted = options();
+    wanted.threaded = true;
+    wanted.at_once = true;
+    wanted.record = false;
+    app = std::make_unique<PlayApp>(wanted, context);
+    app->settings().view.largest_picture = 2048;
+    app->window().resize(3840, 2160);  // a fluoroscopy takes long
+    while (app->screen() == Screen::loading) app->turn();
+    key(SDL_SCANCODE_SPACE, true);
+    std::atomic<int> quick = 0, between = 0, slow = 0;
+    app->painter()->set_observer([&](View view, const FrameDescription&, const Image8&) {
+        if (view == View::fluoroscopy && ++slow <= 2) between = quick.exchange(0);
+        if (view != View::fluoroscopy) ++quick;
+    });
+    for (int i = 0; i < 600 && slow < 2; ++i) app->turn();
+    ASSERT_GE(slow, 2);
+    const Painter& painter = *app->painter();
+    const double pictures = painter.cost(View::fluoroscopy).quantile(0.5) / painter.cost(View::inner).quantile(0.95);
+    EXPECT_GE(between, std::min(2.0, 0.2 * pictures)) << "pictures of the view from the tip during one fluoroscopy";
+    app.reset();
 }
 
 TEST_F(TrainerWindow, EveryScreenIsDrawnAtEverySizeOfText) {
