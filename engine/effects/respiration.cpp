@@ -1,8 +1,10 @@
 // Breathing moves what the vessels hang on.  Displacement of a support at height z:
 //     u(z, t) = a w(z) sin^(2 n)(pi s(t / T)) d,
 // the breathing curve of Lujan et al. (1999), which dwells at end-expiration the longer the larger n is, and time
-// counted from there; w falls from 1 at and above the diaphragm's height to 0 at the pelvis, because bone holds the
-// iliac arteries.
+// counted from there; until `held_until_s` the breath is held at the share `held` of inspiration, from where it goes
+// over to the curve within a fifth of a breath; w falls from 1 at and above the diaphragm's height to 0 at the pelvis,
+// because bone holds the iliac arteries.
+#include <algorithm>
 #include <cmath>
 
 #include "core/deterministic_math.h"
@@ -11,6 +13,8 @@
 
 namespace cathlab {
 namespace {
+
+constexpr double begins_within = 0.2;  // of a breath
 
 class Respiration final : public Effect {
 public:
@@ -22,20 +26,28 @@ public:
           upper_(p[6]),
           lower_(p[7]),
           dwell_(p[8]),
-          inspiration_(p[9]) {
+          inspiration_(p[9]),
+          held_until_(p[10]),
+          held_(p[11]) {
         const double n = std::sqrt(direction_.squaredNorm());
         direction_ = n > 0.0 ? Vec3(direction_ / n) : Vec3(0.0, 0.0, -1.0);
     }
 
     void drive(const EffectContext& context, Drive& drive) override {
-        double place = (context.time_s + context.dt) / period_ + phase_;
+        const double now = context.time_s + context.dt;
+        double place = now / period_ + phase_;
         if (inspiration_ != 0.5) {
             place -= std::floor(place);
             place = place < inspiration_ ? 0.5 * place / inspiration_
                                          : 0.5 + 0.5 * (place - inspiration_) / (1.0 - inspiration_);
         }
         const double s = det::sin(units::pi * place);
-        const double breath = amplitude_ * (dwell_ == 2.0 ? s * s * s * s : det::pow(s * s, dwell_));
+        double curve = dwell_ == 2.0 ? s * s * s * s : det::pow(s * s, dwell_);
+        if (held_until_ > 0.0) {
+            const double begun = std::clamp((now - held_until_) / (begins_within * period_), 0.0, 1.0);
+            curve = held_ + begun * begun * (3.0 - 2.0 * begun) * (curve - held_);
+        }
+        const double breath = amplitude_ * curve;
         for (std::size_t i = 0; i < drive.support_displacement.size(); ++i) {
             const double z = context.wall_rest[i].z();
             double w = upper_ > lower_ ? (z - lower_) / (upper_ - lower_) : 1.0;
@@ -47,7 +59,7 @@ public:
 private:
     double amplitude_, period_, phase_;
     Vec3 direction_;
-    double upper_, lower_, dwell_, inspiration_;
+    double upper_, lower_, dwell_, inspiration_, held_until_, held_;
 };
 
 }  // namespace
@@ -72,6 +84,8 @@ EffectInfo respiration_effect() {
                 {"lower_z_mm", "mm", -300.0, -2000.0, 2000.0, "height below which they stand still"},
                 {"dwell", "1", 2.0, 1.0, 4.0, "n: 1 = a sine, 2 = rests at end-expiration, more = rests longer"},
                 {"inspiration", "1", 0.5, 0.2, 0.8, "part of a breath that inspiration takes"},
+                {"held_until_s", "s", 0.0, 0.0, 20.0, "until then the breath is held; 0 = it is not"},
+                {"held", "1", 0.0, 0.0, 1.0, "where it is held: 0 = end-expiration, 1 = end-inspiration"},
             },
         .strengths = {"amplitude_mm"},
         .make = [](std::span<const double> p) -> std::unique_ptr<Effect> { return std::make_unique<Respiration>(p); },

@@ -1,11 +1,11 @@
 // Effects between drive and catheter, each against the closed form of its law.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/units.h"
 #include "effects/effect.h"
+#include "effects/without_strength.h"
 
 namespace cathlab {
 namespace {
@@ -43,24 +43,18 @@ private:
 };
 
 TEST(Strengths, AnEffectWhoseStrengthsAreAllZeroDoesNothingToTheBit) {
-    for (const EffectInfo& info : effect_table()) {
-        if ((info.hooks & hook_actuation) == 0 || info.for_tests) continue;
-        ASSERT_FALSE(info.strengths.empty()) << info.name;
-        std::vector<double> values;
-        for (const Parameter& p : info.parameters) {
-            const bool strength =
-                std::find(info.strengths.begin(), info.strengths.end(), p.key) != info.strengths.end();
-            values.push_back(strength ? 0.0 : p.default_value);
-        }
+    effects_test::for_each_without_strength(hook_actuation, [](const EffectInfo& info, const auto& values) {
         Bench bench(info.name.data(), values);
         for (const double bend : {0.0, 20.0, 35.0, -10.0, 5.0}) {
             const Actuation act = bench({bend, 2.0 * bend}, 3.0 * bend, bend, Vec3(0.0, -1.0, 0.0));
             EXPECT_EQ(act.segments[0].bend_rad, Vec2(bend * units::deg, 0.0)) << info.name;
             EXPECT_EQ(act.segments[1].bend_rad, Vec2(2.0 * bend * units::deg, 0.0)) << info.name;
+            EXPECT_EQ(act.segments[0].taper, 0.0) << info.name;
             EXPECT_EQ(act.rotation_rad, 3.0 * bend * units::deg) << info.name;
             EXPECT_EQ(act.insertion_mm, bend) << info.name;
+            EXPECT_EQ(act.tip_compliance_mm_per_n, 0.0) << info.name;
         }
-    }
+    });
 }
 
 TEST(Backlash, LosesItsWidthAtEveryReversal) {
@@ -166,6 +160,104 @@ TEST(TendonSlack, APulledTendonBendsAloneAndThosePaidOutGoSlack) {
     act.segments = {segment};
     find_effect("tendon_slack")->make(std::vector<double>{1.0, 0.0})->actuation({}, act);
     EXPECT_NEAR((act.segments[0].bend_rad - bend).norm(), 0.0, 1e-9);
+}
+
+TEST(TorsionWindup, TheTipTurnsWhenTheShaftIsWoundUpWhichGrowsWithItsLength) {
+    Bench bench("torsion_windup", {2.0, 10.0});
+    const auto tip_deg = [&](double drive, double insertion) {
+        return bench({0.0}, drive, insertion).rotation_rad / units::deg;
+    };
+    EXPECT_DOUBLE_EQ(tip_deg(0.0, 100.0), 0.0);
+    EXPECT_DOUBLE_EQ(tip_deg(11.0, 100.0), 0.0);  // 2 + 10 are held
+    EXPECT_NEAR(tip_deg(30.0, 100.0), 18.0, 1e-12);
+    EXPECT_NEAR(tip_deg(20.0, 100.0), 18.0, 1e-12);
+    EXPECT_NEAR(tip_deg(-10.0, 100.0), 2.0, 1e-12);
+    EXPECT_NEAR(tip_deg(-30.0, 200.0), -8.0, 1e-12);  // 2 + 20
+}
+
+TEST(CurvatureTaper, EachSegmentHasItsOwnAndTheyAddUp) {
+    Bench bench("curvature_taper", {0.5, -0.2, 0.1});
+    const Actuation act = bench({10.0, 20.0, 30.0});
+    EXPECT_DOUBLE_EQ(act.segments[0].taper, 0.5);
+    EXPECT_DOUBLE_EQ(act.segments[1].taper, -0.2);
+    EXPECT_DOUBLE_EQ(act.segments[2].taper, 0.1);
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(act.segments[i].bend_rad.x() / units::deg, 10.0 * (static_cast<double>(i) + 1.0), 1e-12);
+    find_effect("curvature_taper")
+        ->make(std::vector<double>{0.1, 0.1, 0.1})
+        ->actuation({}, const_cast<Actuation&>(act));
+    EXPECT_DOUBLE_EQ(act.segments[1].taper, -0.1);
+}
+
+TEST(TipCompliance, AddsItsOwnToWhatIsThere) {
+    Actuation act;
+    act.tip_compliance_mm_per_n = 1.5;
+    find_effect("tip_compliance")->make(std::vector<double>{4.0})->actuation({}, act);
+    EXPECT_DOUBLE_EQ(act.tip_compliance_mm_per_n, 5.5);
+}
+
+TEST(TendonRouting, TwoSegmentsShareTheDistalTendonsPull) {
+    for (const double give : {0.01, 0.5, 4.0}) {
+        Bench bench("tendon_routing", {1.0, give});
+        const double a = 20.0, b = -30.0;
+        const Actuation act = bench({a, b});
+        // The gradient of the law's energy by hand: (give + 2) x + y = (1 + give) (a + b), x + (1 + give) y = (1 +
+        // give) b.
+        const double g1 = 1.0 + give, d = (give + 2.0) * g1 - 1.0;
+        EXPECT_NEAR(act.segments[0].bend_rad.x() / units::deg, g1 * (g1 * (a + b) - b) / d, 1e-9);
+        EXPECT_NEAR(act.segments[1].bend_rad.x() / units::deg, g1 * ((give + 2.0) * b - (a + b)) / d, 1e-9);
+    }
+    Bench alone("tendon_routing", {1.0, 0.5});
+    EXPECT_NEAR(alone.bend_deg(25.0), 25.0, 1e-12);
+}
+
+/// A segment whose `pulled` (mm) tendons stand evenly around, and which its drive bends as ideal tendons would.
+ActuatedSegment tendons(const std::vector<double>& pulled, double radius_mm) {
+    ActuatedSegment out;
+    out.tendon_radius_mm = radius_mm;
+    out.tendon_mm = pulled;
+    const auto n = static_cast<double>(pulled.size());
+    for (std::size_t k = 0; k < pulled.size(); ++k) {
+        const double place = 2.0 * units::pi * static_cast<double>(k) / n;
+        out.tendon_rad.push_back(place);
+        out.bend_rad += 2.0 / (n * radius_mm) * pulled[k] * Vec2(std::cos(place), std::sin(place));
+    }
+    return out;
+}
+
+TEST(TendonStretch, TautTendonsShareTheBendWithTheSegmentAsSpringsInARow) {
+    // Four taut tendons hold with 2 (in units of one), the segment resists with `give`; a straight rest shape.
+    for (const double give : {0.1, 1.0, 5.0}) {
+        Actuation act;
+        act.segments = {tendons({1.5, 0.5, -1.5, -0.5}, 5.0)};
+        const Vec2 asked = act.segments[0].bend_rad;
+        find_effect("tendon-stretch")->make(std::vector<double>{1.0, give, 8.0})->actuation({}, act);
+        EXPECT_NEAR((act.segments[0].bend_rad - 2.0 / (2.0 + give) * asked).norm(), 0.0, 1e-12);
+    }
+}
+
+TEST(TendonStretch, ATendonThatIsPaidOutDoesNotPush) {
+    Actuation act;
+    act.segments = {tendons({4.0, -9.0, -9.0}, 5.0)};
+    find_effect("tendon-stretch")->make(std::vector<double>{1.0, 0.25, 0.0})->actuation({}, act);
+    EXPECT_NEAR(act.segments[0].bend_rad.x(), 4.0 / 5.0 / 1.25, 1e-12);
+    EXPECT_NEAR(act.segments[0].bend_rad.y(), 0.0, 1e-12);
+}
+
+TEST(TendonStretch, ADistalTendonBendsEverySegmentThatItRunsThrough) {
+    const double give = 0.6, pulled = 3.0, radius = 5.0;
+    Actuation act;
+    act.segments = {tendons({-9.0, -9.0, -9.0}, radius), tendons({-9.0, -9.0, -9.0}, radius),
+                    tendons({pulled, -9.0, -9.0}, radius)};
+    const auto effect = find_effect("tendon-stretch")->make(std::vector<double>{1.0, give, 0.0});
+    effect->actuation({}, act);
+    for (const ActuatedSegment& s : act.segments)
+        EXPECT_NEAR((s.bend_rad - Vec2(pulled / radius / (give + 3.0), 0.0)).norm(), 0.0, 1e-12);
+    // A rest shape of the drive stays where nothing pulls.
+    act.segments = {tendons({-2.0, -2.0, -2.0}, radius)};
+    act.segments[0].bend_rad += Vec2(0.1, 0.2);
+    find_effect("tendon-stretch")->make(std::vector<double>{1.0, give, 0.0})->actuation({}, act);
+    EXPECT_NEAR((act.segments[0].bend_rad - Vec2(0.1, 0.2)).norm(), 0.0, 1e-12);
 }
 
 }  // namespace

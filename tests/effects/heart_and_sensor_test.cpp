@@ -6,6 +6,7 @@
 
 #include "core/units.h"
 #include "effects/effect.h"
+#include "effects/without_strength.h"
 
 namespace cathlab {
 namespace {
@@ -88,7 +89,7 @@ TEST(EctopicBeats, TheRhythmGoesOnAsIfNothingHadBeen) {
 
 TEST(Respiration, InspirationTakesItsPartOfTheBreath) {
     const std::vector<Vec3> rest{Vec3::Zero()};
-    const auto effect = made("respiration", {10.0, 4.0, 0.0, 0.0, 0.0, 1.0, -100.0, -300.0, 1.0, 0.3});
+    const auto effect = made("respiration", {10.0, 4.0, 0.0, 0.0, 0.0, 1.0, -100.0, -300.0, 1.0, 0.3, 0.0, 0.0});
     EffectContext context;
     context.wall_rest = rest;
     context.time_s = 0.3 * 4.0;
@@ -136,6 +137,68 @@ TEST(SensorDrift, CreepsByItsRate) {
     EXPECT_NEAR(c.catheter_tip_y_mm, -5.0, 1e-12);
     EXPECT_NEAR(c.catheter_tip_z_mm, 2.5, 1e-12);
     EXPECT_NEAR(c.annulus_displacement_mm, 1.5, 1e-12);
+}
+
+TEST(Respiration, AHeldBreathGoesOverToTheCurveWithinAFifthOfABreath) {
+    const std::vector<Vec3> rest{Vec3::Zero()};
+    const auto effect = made("respiration", {10.0, 4.0, 0.0, 0.0, 0.0, 1.0, -100.0, -300.0, 1.0, 0.5, 2.0, 0.25});
+    EffectContext context;
+    context.wall_rest = rest;
+    const auto at = [&](double time_s) {
+        context.time_s = time_s;
+        return driven(*effect, context).support_displacement[0].z();
+    };
+    const auto curve = [](double time_s) { return 10.0 * std::pow(std::sin(units::pi * time_s / 4.0), 2); };
+    for (const double t : {0.0, 0.7, 2.0}) EXPECT_NEAR(at(t), 2.5, 1e-12);
+    EXPECT_NEAR(at(2.4), 0.5 * (2.5 + curve(2.4)), 1e-9);
+    for (const double t : {2.8, 3.3, 9.1}) EXPECT_NEAR(at(t), curve(t), 1e-9);
+}
+
+TEST(RegionalMotion, BeginsEveryBeatWhereItStandsAndGoesTwiceRoundInIt) {
+    const std::vector<Vec3> rest{Vec3::Zero(), Vec3(0, 0, -400)};
+    const auto effect = made("regional_motion", {1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, -4.0});
+    EffectContext context = at_beat(2);
+    context.wall_rest = rest;
+    const auto at = [&](double phase) {
+        context.heart_phase = phase;
+        return driven(*effect, context).support_displacement[1];
+    };
+    EXPECT_NEAR(at(0.0).norm(), 0.0, 1e-12);
+    EXPECT_NEAR((at(0.25) - Vec3(-1.0, 2.0, -6.0)).norm(), 0.0, 1e-9);
+    EXPECT_NEAR((at(0.5) - Vec3(-2.0, 0.0, 0.0)).norm(), 0.0, 1e-9);
+    EXPECT_NEAR(at(0.125).z(), -3.0 - 4.0, 1e-9);
+    context.heart_beat_s = 0.0;  // no heart
+    EXPECT_EQ(at(0.25).norm(), 0.0);
+}
+
+TEST(FieldDistortion, GrowsWithTheSquareOfTheDistance) {
+    const auto effect = made("field_distortion", {1.0, 0.5, 0.0, -0.25});
+    Channels c = read(*effect, 0.0, 0.0, Vec3(200.0, 0.0, 0.0));
+    EXPECT_NEAR(c.catheter_tip_x_mm, 200.0 + 4.0 * (0.5 + 1.0), 1e-12);
+    EXPECT_NEAR(c.catheter_tip_z_mm, 4.0 * -0.25, 1e-12);
+    c = read(*effect, 0.0, 0.0, Vec3(0.0, -50.0, 0.0));
+    EXPECT_NEAR(c.catheter_tip_y_mm, -50.0 - 0.25, 1e-12);
+    c = read(*effect, 0.0, 0.0, Vec3::Zero());
+    EXPECT_EQ(c.catheter_tip_x_mm, 0.0);
+}
+
+TEST(Strengths, OfHeartBodyAndSensorAreNothingWhenZero) {
+    const std::vector<Vec3> rest{Vec3::Zero(), Vec3(0, 0, -200)};
+    effects_test::for_each_without_strength(hook_drive | hook_measure, [&](const EffectInfo& info, const auto& values) {
+        const auto effect = info.make(values);
+        EffectContext context = at_beat(5);
+        context.wall_rest = rest;
+        for (const double t : {0.0, 1.0, 3.7}) {
+            context.time_s = t;
+            const Drive drive = driven(*effect, context);
+            for (const Vec3& u : drive.support_displacement) EXPECT_EQ(u.norm(), 0.0) << info.name;
+            EXPECT_EQ(drive.heart_amplitude_scale, 1.0) << info.name;
+            EXPECT_EQ(drive.heart_displacement_mm, 0.0) << info.name;
+            const Channels c = read(*effect, t, 0.1, Vec3(3.0 + t, 4.0, 5.0));
+            EXPECT_EQ(c.catheter_tip_x_mm, 3.0 + t) << info.name;
+            EXPECT_EQ(c.catheter_tip_z_mm, 5.0) << info.name;
+        }
+    });
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 // Effects of the wall, each against the closed form of its law at one point of the membrane.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "effects/effect.h"
+#include "effects/without_strength.h"
 #include "softbody/uniaxial.h"
 
 namespace cathlab {
@@ -46,22 +46,14 @@ MembranePoint elastic(double along, double across) {
 }
 
 TEST(Wall, AnEffectWhoseStrengthsAreAllZeroChangesNothing) {
-    for (const EffectInfo& info : effect_table()) {
-        if ((info.hooks & hook_membrane) == 0 || info.for_tests) continue;
-        ASSERT_FALSE(info.strengths.empty()) << info.name;
-        std::vector<double> values;
-        for (const Parameter& p : info.parameters) {
-            const bool strength =
-                std::find(info.strengths.begin(), info.strengths.end(), p.key) != info.strengths.end();
-            values.push_back(strength ? 0.0 : p.default_value);
-        }
+    effects_test::for_each_without_strength(hook_membrane, [](const EffectInfo& info, const auto& values) {
         Point point(info.name.data(), values);
         for (const double stretch : {1.0, 1.3, 1.1, 0.8, 1.4}) {
             const MembranePoint found = point.at(stretch, 0.9, 0.1), wanted = elastic(stretch, 0.9);
             EXPECT_EQ(found.stress, wanted.stress) << info.name;
             EXPECT_EQ(found.at_once, 1.0) << info.name;
         }
-    }
+    });
 }
 
 TEST(Wall, TheUniaxialClosedFormOfTheElasticLawIsThatOfANeoHookeanSolid) {

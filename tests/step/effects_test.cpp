@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/temporary_folder.h"
 #include "step/support_force.h"
 
 namespace cathlab {
@@ -109,6 +110,27 @@ TEST(ConstraintHook, StiffSpringsHoldEveryParticle) {
     EXPECT_GT(loose.channels.wall_displacement_max_mm, 0.01);
     EXPECT_LE(held.channels.wall_displacement_max_mm, 1.02 * heaviest * acceleration / stiffness);
     EXPECT_TRUE(held.finite());
+}
+
+TEST(Overlay, EveryEffectThatCanBeFoundRunsWhereOneSwitchesItOn) {
+    const TemporaryFolder folder;
+    std::shared_ptr<const SceneModels> elastic;
+    for (const EffectInfo& info : effect_table()) {
+        if (info.for_tests) continue;
+        std::string text = info.elastic_wall ? "[wall]\nform = \"elastic\"\n" : "";
+        text += "[effects." + std::string(info.name) + "]\nenabled = true\n";
+        for (const Parameter& p : info.parameters) {
+            const bool strength =
+                std::find(info.strengths.begin(), info.strengths.end(), p.key) != info.strengths.end();
+            if (strength && p.default_value == 0.0)
+                text += std::string(p.key) + " = " + std::to_string(0.02 * p.maximum) + "\n";
+        }
+        const SceneSpec spec = rig_spec("fork", {folder.write("o.toml", text)});
+        if (info.elastic_wall && !elastic) elastic = build_models(spec, {});
+        RigRun run(build_world(spec, info.elastic_wall ? *elastic : rig_models("fork"), spec.seed, 1));
+        for (int k = 0; k < 4; ++k) run.step(busy_hands(k));
+        EXPECT_TRUE(run.finite()) << info.name;
+    }
 }
 
 }  // namespace
