@@ -28,11 +28,15 @@ Json result_of(const Dataset& data, const Explanation& found, const ExplainOptio
     for (const FittedEffect& effect : found.effects) {
         Json parameters = Json::object();
         for (const auto& [key, value] : effect.parameters) parameters[key] = number(value);
+        Json of_runs = Json::object();
+        for (const auto& [run, numbers] : effect.of_runs)
+            for (const auto& [key, value] : numbers) of_runs[run][key] = number(value);
         effects.push_back({{"name", effect.name},
                            {"parameters", std::move(parameters)},
                            {"p_value", number(effect.p_value)},
                            {"held_out_rms_before", number(effect.held_out_before)},
                            {"held_out_rms_after", number(effect.held_out_after)}});
+        if (!of_runs.empty()) effects.back()["parameters_of_runs"] = std::move(of_runs);
     }
     for (const Candidate& c : found.candidates)
         candidates.push_back(

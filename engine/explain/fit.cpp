@@ -80,26 +80,33 @@ std::vector<double> acting(const EffectInfo& effect) {
 
 }  // namespace
 
+bool is_own(const EffectInfo& effect, const Parameter& p) {
+    return is_direction(p) || p.key == "held_until_s" || (p.unit == "mm" && is_strength(effect, p));
+}
+
 std::string why_no_effect(const EffectTrial& trial, const std::vector<bool>& free) {
     constexpr double near = 1e-3;
     bool strong = false;
-    for (std::size_t k = 0; k < trial.values.size(); ++k) {
-        const Parameter& p = trial.effect->parameters[k];
-        if (!free[k]) continue;
-        const double value = trial.values[k], range = p.maximum - p.minimum;
-        const double least = p.default_value > 0.0 ? std::min(near * range, 0.01 * p.default_value) : near * range;
-        if (is_strength(*trial.effect, p) && std::fabs(value) > least) strong = true;
-        if (is_phase(p) || is_direction(p)) continue;
-        // 0 and 1 are ends by meaning (none, all of it), not by the range that somebody chose.
-        const auto& ends = trial.effect->meant_ends;
-        const bool meant = std::find(ends.begin(), ends.end(), p.key) != ends.end();
-        const auto natural = [&](double bound) { return meant || bound == 0.0 || (bound == 1.0 && p.unit == "1"); };
-        const Scale scale(p);
-        const double place = scale.to(value), from = scale.to(p.minimum), to = scale.to(p.maximum);
-        const bool low = place - from < near * (to - from) && !natural(p.minimum);
-        const bool high = to - place < near * (to - from) && !natural(p.maximum);
-        if (low || high) return "its '" + std::string(p.key) + "' ends on a bound of its range";
-    }
+    std::vector<std::vector<double>> all = trial.own;
+    if (all.empty()) all.push_back(trial.values);
+    for (const std::vector<double>& values : all)
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            const Parameter& p = trial.effect->parameters[k];
+            if (!free[k]) continue;
+            const double value = values[k], range = p.maximum - p.minimum;
+            const double least = p.default_value > 0.0 ? std::min(near * range, 0.01 * p.default_value) : near * range;
+            if (is_strength(*trial.effect, p) && std::fabs(value) > least) strong = true;
+            if (is_phase(p) || is_direction(p)) continue;
+            // 0 and 1 are ends by meaning (none, all of it), not by the range that somebody chose.
+            const auto& ends = trial.effect->meant_ends;
+            const bool meant = std::find(ends.begin(), ends.end(), p.key) != ends.end();
+            const auto natural = [&](double bound) { return meant || bound == 0.0 || (bound == 1.0 && p.unit == "1"); };
+            const Scale scale(p);
+            const double place = scale.to(value), from = scale.to(p.minimum), to = scale.to(p.maximum);
+            const bool low = place - from < near * (to - from) && !natural(p.minimum);
+            const bool high = to - place < near * (to - from) && !natural(p.maximum);
+            if (low || high) return "its '" + std::string(p.key) + "' ends on a bound of its range";
+        }
     return strong ? "" : "its strength is zero";
 }
 
@@ -128,7 +135,7 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
             Bound bound{scale.to(p.minimum), scale.to(p.maximum), std::string(p.key)};
             if (is_phase(p)) bound = {p.minimum - 1.0, p.maximum + 1.0, bound.name};  // goes round
             const double range = bound.upper - bound.lower;
-            if (!free[k]) bound.lower = bound.upper = scale.to(v);
+            if (!free[k] || (!trial.own.empty() && is_own(*trial.effect, p))) bound.lower = bound.upper = scale.to(v);
             problem.bounds.push_back(bound);
             problem.start.push_back(scale.to(v));
             // A trace of ridge towards no effect, and towards the usual value of what only shapes it: numbers that the
@@ -136,6 +143,16 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
             weights.push_back(free[k] ? 3e-3 * std::sqrt(rows) / range : 0.0);
             centres.push_back(is_strength(*trial.effect, p) ? 0.0 : scale.to(p.default_value));
         }
+        for (const std::vector<double>& own : trial.own)
+            for (std::size_t k = 0; k < own.size(); ++k) {
+                const Parameter& p = trial.effect->parameters[k];
+                if (!free[k] || !is_own(*trial.effect, p)) continue;
+                const Scale scale(p);
+                problem.bounds.push_back({scale.to(p.minimum), scale.to(p.maximum), std::string(p.key)});
+                problem.start.push_back(scale.to(std::clamp(own[k], p.minimum, p.maximum)));
+                weights.push_back(3e-3 * std::sqrt(rows) / (problem.bounds.back().upper - problem.bounds.back().lower));
+                centres.push_back(is_strength(*trial.effect, p) ? 0.0 : scale.to(p.default_value));
+            }
         for (std::size_t run = 0; run < trial.phase_of_run.size(); ++run) {
             problem.bounds.push_back({run == 0 ? 0.0 : -1.0, run == 0 ? 0.0 : 1.0, "phase of run"});
             problem.start.push_back(trial.phase_of_run[run]);
@@ -157,6 +174,14 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
                 trial.values[k] = is_phase(p) ? x[at] : std::clamp(Scale(p).from(x[at]), p.minimum, p.maximum);
                 ++at;
             }
+            const std::vector<bool>& free = free_parameters(*trial.effect);
+            for (std::vector<double>& own : trial.own)
+                for (std::size_t k = 0; k < own.size(); ++k) {
+                    const Parameter& p = trial.effect->parameters[k];
+                    own[k] = free[k] && is_own(*trial.effect, p)
+                                 ? std::clamp(Scale(p).from(x[at++]), p.minimum, p.maximum)
+                                 : trial.values[k];
+                }
             for (double& v : trial.phase_of_run) v = x[at++];
         }
     };
@@ -180,7 +205,10 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
     unpack(found.best, model);
     for (EffectTrial& fitted : model.effects)
         for (std::size_t k = 0; k < fitted.values.size(); ++k)
-            if (is_phase(fitted.effect->parameters[k])) fitted.values[k] -= std::floor(fitted.values[k]);
+            if (is_phase(fitted.effect->parameters[k])) {
+                fitted.values[k] -= std::floor(fitted.values[k]);
+                for (std::vector<double>& own : fitted.own) own[k] = fitted.values[k];
+            }
     model.residual = rig_.residual(model.base, model.effects);
     model.train_cost = cost_of(model);
 }
@@ -232,7 +260,12 @@ bool Fitter::learn(const EffectInfo& effect) {
     const std::vector<double> base = rig_.start();
     const std::size_t count = effect.parameters.size();
     const auto residual = [&](const std::vector<double>& values) {
-        const EffectTrial trial{&effect, values};
+        EffectTrial trial{&effect, values};
+        // What all recordings have alike, the beat of a heart may take up.
+        if (may_differ(effect)) {
+            trial.own.assign(rig_.data().run_names.size(), acting(effect));
+            trial.own.back() = values;
+        }
         return rig_.residual(base, std::span(&trial, 1));
     };
     std::vector<bool> may(count), out(count, false);
@@ -260,7 +293,7 @@ bool Fitter::learn(const EffectInfo& effect) {
             out[k] = matters;
         }
         // An effect that acts as it usually does is known by that.
-        if (std::find(out.begin(), out.end(), true) != out.end() && rig_.bounds().empty()) break;
+        if (std::find(out.begin(), out.end(), true) != out.end() && rig_.bounds().empty() && !may_differ(effect)) break;
     }
     const bool any = std::find(out.begin(), out.end(), true) != out.end();
     free_[&effect] = std::move(out);
@@ -404,15 +437,31 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
                   [](const FittedModel& a, const FittedModel& b) { return a.train_cost < b.train_cost; });
         if (best.size() > searched) best.pop_back();
     }
-    FittedModel best;
-    best.train_cost = std::numeric_limits<double>::infinity();
+    FittedModel best, own;
+    own.train_cost = best.train_cost = std::numeric_limits<double>::infinity();
+    if (may_differ(effect))
+        for (const std::vector<FittedModel>& way : tried)
+            for (const FittedModel& model : way) {
+                FittedModel other = each_run_its_own(model, effect);
+                if (other.train_cost < own.train_cost) own = std::move(other);
+            }
     for (std::vector<FittedModel>& way : tried)
         for (FittedModel& model : way) {
             refit(model, rig_.slow() ? 6 : 10, base_too);
             if (model.train_cost < best.train_cost) best = std::move(model);
         }
     if (!rig_.slow()) refit(best, rig_.bounds().empty() ? 30 : 15);
-    return best;
+    if (own.effects.empty()) return best;
+    // Numbers of their own have to pay for themselves [schwarz1978].
+    refit(own, 15);
+    centre(own, effect);
+    double rows = 0.0, numbers = 0.0;
+    for (const auto& column : own.residual)
+        for (std::size_t i = 0; i < column.size(); ++i) rows += rig_.split().held_out[i] == 0 && !std::isnan(column[i]);
+    for (std::size_t k = 0; k < effect.parameters.size(); ++k)
+        numbers += free_parameters(effect)[k] && is_own(effect, effect.parameters[k]) ? 1.0 : 0.0;
+    numbers *= static_cast<double>(rig_.data().run_names.size() - 1);
+    return rows * std::log(best.train_cost / own.train_cost) > numbers * std::log(rows) ? own : best;
 }
 
 FittedModel Fitter::without(const FittedModel& from, std::size_t k) const {

@@ -51,6 +51,13 @@ private:
     FittedModel beside(const FittedModel& from, const EffectTrial& trial) const;
     /// The effect with its phase, in each run, where it helps most.
     EffectTrial turned(const FittedModel& from, const EffectTrial& trial) const;
+    /// Whether recordings may have numbers of their own for it, and rows enough to say them.
+    bool may_differ(const EffectInfo& effect) const;
+    std::vector<double> cost_of_runs(const Columns& residual) const;
+    /// Where all of an effect's numbers are the recordings' own, what they have alike is the heart's beat: taken out.
+    void centre(FittedModel& model, const EffectInfo& effect) const;
+    /// Numbers of their own for the recordings, searched from where the model is.
+    FittedModel each_run_its_own(FittedModel model, const EffectInfo& effect) const;
     std::vector<std::vector<double>> starts(const FittedModel& from, const EffectInfo& effect) const;
 
     const Rig& rig_;
@@ -58,6 +65,10 @@ private:
     LossScale scale_;
     std::map<const EffectInfo*, std::vector<bool>> free_;
 };
+
+/// Whether recordings of different places may each have this number for their own: how far and which way the effect
+/// moves a place, and from when on.
+bool is_own(const EffectInfo& effect, const Parameter& p);
 
 /// In words, why a fitted effect is none: its strength is zero, or a parameter ends on a bound of its range.  "" = it
 /// is one.

@@ -64,6 +64,8 @@ public:
         return out;
     }
 
+    bool places_differ() const override { return data_.run_names.size() > 1; }
+
     std::vector<std::string> notes() const override {
         if (clock_.dropped() == 0) return {};
         return {std::to_string(clock_.dropped()) +

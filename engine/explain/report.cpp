@@ -35,14 +35,21 @@ PageTable error_table(const Dataset& data, const Explanation& found) {
 }
 
 PageTable effect_table_of(const Explanation& found) {
+    const auto told = [](const FittedEffect& effect, const NamedNumbers& numbers) {
+        std::string out;
+        for (const auto& [key, value] : numbers) {
+            const auto& all = effect.info->parameters;
+            const auto p = std::find_if(all.begin(), all.end(), [&](const Parameter& q) { return q.key == key; });
+            out += (out.empty() ? "" : ", ") + key + " " + number(value) +
+                   (p == all.end() || p->unit == "1" ? "" : " " + std::string(p->unit));
+        }
+        return out;
+    };
     PageTable out{"Effects found", {"effect", "parameters", "p", "held out without it", "held out with it"}, {}};
     for (const FittedEffect& effect : found.effects) {
-        std::string parameters;
-        for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
-            const auto& unit = effect.info->parameters[k].unit;
-            parameters += (k > 0 ? ", " : "") + effect.parameters[k].first + " " + number(effect.parameters[k].second) +
-                          (unit == "1" ? "" : " " + std::string(unit));
-        }
+        std::string parameters = told(effect, effect.parameters);
+        for (const auto& [run, numbers] : effect.of_runs)
+            if (run != effect.of_runs.begin()->first) parameters += "; recording " + run + ": " + told(effect, numbers);
         out.rows.push_back({effect.name, parameters, number(effect.p_value, 2), number(effect.held_out_before),
                             number(effect.held_out_after)});
     }

@@ -35,11 +35,11 @@ RigEffects::RigEffects(std::span<const EffectTrial> trials) : trials_(trials) {
 void RigEffects::begin_run(Index run) {
     made_.clear();
     for (const EffectTrial& trial : trials_) {
+        std::vector<double> values = trial.own.empty() ? trial.values : trial.own[static_cast<std::size_t>(run)];
         if (trial.phase_of_run.empty()) {
-            made_.push_back(trial.effect->make(trial.values));
+            made_.push_back(trial.effect->make(values));
             continue;
         }
-        std::vector<double> values = trial.values;
         double& phase = values[phase_place(*trial.effect)];
         phase += trial.phase_of_run[static_cast<std::size_t>(run)];
         phase -= std::floor(phase);

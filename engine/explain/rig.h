@@ -25,6 +25,9 @@ struct EffectTrial {
     /// What runs by its own clock goes on between recordings: its phase at the start of each run, less that of the
     /// first.  Empty = the recordings begin alike.
     std::vector<double> phase_of_run = {};
+    /// Values of the parameters in each run where recordings have their own (Rig::places_differ); those of the
+    /// other parameters are as in `values`.  Empty = the same in all.
+    std::vector<std::vector<double>> own = {};
 };
 
 /// The place of the parameter `phase`, or the number of parameters where there is none.
@@ -61,6 +64,9 @@ public:
 
     /// Whether one model takes seconds: searches are then short.
     virtual bool slow() const { return false; }
+
+    /// Whether each recording was taken at another place.
+    virtual bool places_differ() const { return false; }
 
     /// What the reader should know of how the data were taken, a sentence each.
     virtual std::vector<std::string> notes() const { return {}; }

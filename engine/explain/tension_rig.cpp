@@ -32,6 +32,7 @@ public:
         if (!(product != 0.0 && square > 0.0))
             throw UserError(data.folder + ": the rows to be fitted hold no 'strain' with any input");
         guess_kpa_ = std::fabs(product) / square;
+        one_rate_ = strained_at_one_rate();
     }
 
     std::vector<Bound> bounds() const override { return {{-range, range, "ln(modulus / guess)"}, {0.0, 1.0, "hooke"}}; }
@@ -103,9 +104,35 @@ public:
         return effect.name == "stiffening" && key == "angle_deg";
     }
 
+    std::string why_not(const EffectInfo& effect) const override {
+        if (one_rate_ && (effect.name == "viscoelasticity" || effect.name == "creep"))
+            return "every specimen is strained at one rate and never let go: what takes time cannot be told from the "
+                   "law's own shape; another rate, a hold or an unloading would";
+        return Rig::why_not(effect);
+    }
+
 private:
+    /// Whether strain is time by another name, the same in every recording: what has passed is then a function of where
+    /// the specimen is.
+    bool strained_at_one_rate() const {
+        constexpr double even = 0.02;  // of the rate
+        const std::vector<double>& strain = measured_[0]->values;
+        double sum = 0.0, squares = 0.0, count = 0.0;
+        for (std::size_t i = 1; i < data_.rows(); ++i) {
+            if (data_.run[i] != data_.run[i - 1] || std::isnan(strain[i]) || std::isnan(strain[i - 1])) continue;
+            const double rate = (strain[i] - strain[i - 1]) / (data_.time_s[i] - data_.time_s[i - 1]);
+            sum += rate;
+            squares += rate * rate;
+            count += 1.0;
+        }
+        if (count < 2.0) return false;
+        const double mean = sum / count;
+        return squares / count - mean * mean < even * even * mean * mean;
+    }
+
     const std::vector<double>* stress_;
     double guess_kpa_ = 0.0;
+    bool one_rate_ = false;
 };
 
 }  // namespace

@@ -36,6 +36,8 @@ bool holds(const FittedModel& model, const EffectInfo* effect) {
 
 std::string overlay_text(const std::vector<FittedEffect>& effects) {
     std::ostringstream out;
+    if (std::any_of(effects.begin(), effects.end(), [](const FittedEffect& e) { return e.info->elastic_wall; }))
+        out << "# Effects of the wall's law want a wall that has one.\n[wall]\nform = \"elastic\"\n";
     for (const FittedEffect& effect : effects) {
         out << "[effects." << effect.info->name << "]\nenabled = true\n";
         for (const auto& [key, value] : effect.parameters) {
@@ -331,8 +333,15 @@ private:
                 continue;
             }
             FittedEffect found{spoken_name(*effect), effect, {}, p, rms_of(without.residual, split_, 1), 0.0};
+            const EffectTrial& trial = best.effects[k];
             for (std::size_t j = 0; j < effect->parameters.size(); ++j)
-                found.parameters.emplace_back(std::string(effect->parameters[j].key), best.effects[k].values[j]);
+                found.parameters.emplace_back(std::string(effect->parameters[j].key),
+                                              trial.own.empty() ? trial.values[j] : trial.own[0][j]);
+            for (std::size_t run = 0; run < trial.own.size(); ++run)
+                for (std::size_t j = 0; j < effect->parameters.size(); ++j)
+                    if (is_own(*effect, effect->parameters[j]))
+                        found.of_runs[data_.run_names[run]].emplace_back(std::string(effect->parameters[j].key),
+                                                                         trial.own[run][j]);
             out_.effects.push_back(std::move(found));
             ++k;
         }

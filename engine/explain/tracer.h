@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,6 +24,8 @@ struct FittedEffect {
     double p_value = 1.0;          ///< of the model without it against the model with it, corrected for the tries
     double held_out_before = 0.0;  ///< of the model without it, fitted again
     double held_out_after = 0.0;   ///< of the whole model
+    /// Where recordings have numbers of their own (`parameters` are then the first one's), by the name of the run.
+    std::map<std::string, NamedNumbers> of_runs = {};
 };
 
 struct Candidate {

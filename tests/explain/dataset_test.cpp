@@ -6,6 +6,7 @@
 
 #include "core/errors.h"
 #include "explain/folder.h"
+#include "explain/rig.h"
 #include "explain/split.h"
 
 using namespace cathlab;
@@ -184,4 +185,20 @@ TEST(Dataset, EveryFolderOfTheSharedDataIsRead) {
             ++count;
         }
     EXPECT_GE(count, 19);
+}
+
+TEST(Dataset, AMillionRowsAreReadAndRefusedByTheRigInASentence) {
+    std::string csv = "run,t_s,displacement_mm\n";
+    csv.reserve(24U << 20U);
+    for (int i = 0; i < 1000000; ++i) csv += "0," + std::to_string(i) + ",1.5\n";
+    const Folder folder(heart_toml("[]"), csv);
+    const Dataset data = read_dataset(folder.path());
+    EXPECT_EQ(data.rows(), 1000000U);
+    const Split split = split_rows(data);
+    try {
+        make_rig(data, split);
+        FAIL() << "a million rows were taken";
+    } catch (const UserError& e) {
+        EXPECT_NE(std::string(e.what()).find("1000000 rows; at most 100000"), std::string::npos) << e.what();
+    }
 }

@@ -168,3 +168,27 @@ TEST(Beats, ATriggerBetweenTwoOfARhythmIsLeftOut) {
     std::sort(triggers.begin(), triggers.end());
     EXPECT_EQ(beats_among(triggers), beats);
 }
+
+TEST(Tension, WhatTakesTimeIsNotTriedWhereOneRateSaysNothingOfIt) {
+    const std::string setup =
+        "kind = \"wall-tension\"\n[setup]\nspecimen = \"s\"\nthickness_mm = 2.0\nmode = \"tension\"\n";
+    const auto refused = [&](double back_from_s) {
+        std::ostringstream csv;
+        csv.precision(9);
+        csv << "run,t_s,stress_kpa,strain\n";
+        for (int run = 0; run < 2; ++run)
+            for (int i = 0; i < 40; ++i) {
+                const double t = 0.5 * i, strain = 0.01 * (t < back_from_s ? t : 2.0 * back_from_s - t);
+                csv << run << "," << t << "," << 80.0 * strain * (1.0 + strain) << "," << strain << "\n";
+            }
+        const Folder folder(head + setup, csv.str());
+        ExplainOptions options;
+        options.max_effects = 0;
+        const Explanation found = explain(read_dataset(folder.path()), options);
+        for (const Candidate& c : found.candidates)
+            if (c.name == "viscoelasticity") return c.refused_because;
+        return std::string("is no candidate");
+    };
+    EXPECT_NE(refused(100.0).find("at one rate"), std::string::npos) << refused(100.0);
+    EXPECT_EQ(refused(12.0).find("at one rate"), std::string::npos);
+}
