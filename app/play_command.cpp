@@ -34,7 +34,8 @@ void read_size(const std::string& text, play::WindowOptions& window) {
 
 void run_play(PlayArguments& arguments, AppContext& context) {
     play::PlayOptions& options = arguments.options;
-    if (options.settings.empty()) options.settings = play::settings_path();
+    const bool own_settings = options.settings.empty();
+    if (own_settings) options.settings = play::settings_path();
     if (arguments.print_config) {
         std::fputs(settings_toml(play::read_or_default(options.settings)).c_str(), stdout);
         return;
@@ -57,6 +58,7 @@ void run_play(PlayArguments& arguments, AppContext& context) {
     if (arguments.difficulty == "exam") options.difficulty = play::Difficulty::exam;
     catch_stop_signals();
     if (!arguments.tour.empty()) {
+        if (own_settings) options.settings.clear();  // the pictures are the same for everybody
         play::tour(options, context, arguments.tour);
         return;
     }

@@ -62,6 +62,9 @@ void PlayApp::lay_out() {
     const int view = std::max(0, free - panel);
     layout_.side = view >= 64 && column >= 64 ? FrameRect{side, 0, column, view} : FrameRect{};
     layout_.panel = column >= 64 && panel >= 32 ? FrameRect{side, view, column, panel} : FrameRect{};
+    layout_.foot = 5.2F * step;
+    // Without a view, clock and title stand where it would be; their height is free below.
+    if (layout_.side.width == 0 && layout_.panel.height > 0) layout_.panel.y += static_cast<int>(3.0F * step);
     if (!painter_) return;
     const auto most = static_cast<double>(settings_.view.largest_picture);
     PaintSizes sizes;

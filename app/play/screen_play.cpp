@@ -167,7 +167,7 @@ void draw_toasts(const PlayView& view, const ScreenLayout& layout) {
     ImDrawList* list = ImGui::GetForegroundDrawList();
     const FrameRect& r = layout.fluoroscopy;
     const float gap = 0.35F * layout.em;
-    float y = static_cast<float>(r.y + r.height) - 5.5F * layout.em;
+    float y = static_cast<float>(r.y + r.height) - std::max(5.5F * layout.em, layout.foot);
     for (auto toast = view.toasts.rbegin(); toast != view.toasts.rend(); ++toast) {
         const float wrap = 0.85F * static_cast<float>(r.width);
         const ImVec2 size = ImGui::GetFont()->CalcTextSizeA(layout.em, 4096.0F, wrap, toast->c_str());

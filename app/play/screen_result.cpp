@@ -97,7 +97,7 @@ void draw_way(const ResultView& view, float width, float height) {
     ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(own_color), "you");
     if (!view.expert) return;
     ImGui::SameLine();
-    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(expert_color), "expert (autopilot)");
+    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(expert_color), "expert");
 }
 
 Wish draw_expert(const ResultView& view) {

@@ -21,6 +21,7 @@ struct ScreenLayout {
     FrameRect fluoroscopy, side;  ///< side: inner view or kept picture
     FrameRect panel;              ///< between it and the force bars
     float em = 16;                ///< height of the text
+    float foot = 0;               ///< of the fluoroscopy: what the panels write there reaches up so far
 };
 
 /// What a menu's button asks for.

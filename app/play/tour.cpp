@@ -144,7 +144,6 @@ void tour(PlayOptions options, const AppContext& context, const std::string& fol
     options.threaded = false;
     options.silent = true;
     options.record = false;
-    options.settings.clear();
     tour_of_play(options, context, folder);
     tour_of_a_study(options, context, folder);
 }
