@@ -157,6 +157,26 @@ std::vector<GroupForces> forces_of(const std::string& study, const Protocol& pro
     return out;
 }
 
+/// Of all runs; a sheet that cannot be read is left out and said.
+std::vector<GroupAnswers> answers_of(const std::string& study, const Protocol& protocol,
+                                     const std::vector<RunEntry>& runs, std::vector<std::string>& left_out) {
+    std::vector<GroupAnswers> out;
+    for (const std::string& group : protocol.groups) {
+        GroupAnswers answers{group, {}};
+        for (const RunEntry& run : runs) {
+            const std::string path = study + "/" + run.folder + "/questionnaire.json";
+            if (run.group != group || !fs::exists(path)) continue;
+            try {
+                answers.sheets.push_back(read_questionnaire(path));
+            } catch (const UserError& error) {
+                left_out.emplace_back(error.what());
+            }
+        }
+        out.push_back(std::move(answers));
+    }
+    return out;
+}
+
 void report(const StudyOptions& options, const AppContext& context) {
     const Protocol protocol = read_study(options.folder);
     const auto participants = read_participants(options.folder, protocol);
@@ -166,6 +186,9 @@ void report(const StudyOptions& options, const AppContext& context) {
     for (RunEntry& run : index.list())
         if (run.trial > 0) runs.push_back(std::move(run));
     Page page = study_page(protocol, participants, runs);
+    const auto answers = answers_of(options.folder, protocol, runs, left_out);
+    page.bars = likert_bars(answers);
+    if (PageTable scales = scales_table(answers); !scales.rows.empty()) page.tables.push_back(std::move(scales));
     page.maps = force_maps(forces_of(options.folder, protocol, runs));
     for (const std::string& sentence : left_out) page.paragraphs.push_back("Left out: " + sentence);
     page.command = context.command_line;

@@ -44,6 +44,7 @@ std::string html_page(const Page& page) {
     for (const PageTable& table : page.tables) out += table_text(table);
     for (const Plot& plot : page.plots) out += svg_plot(plot);
     for (const HeatMap& map : page.maps) out += svg_heat_map(map);
+    for (const StackedBars& bars : page.bars) out += svg_stacked_bars(bars);
     for (const PageTable& table : page.details) out += table_text(table);
     if (!page.command.empty()) out += "<p>Made by</p>\n<pre>" + xml_escaped(page.command) + "</pre>\n";
     return out + "</body>\n</html>\n";

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/heat_map.h"
+#include "core/stacked_bars.h"
 #include "core/svg_plot.h"
 
 namespace cathlab {
@@ -21,6 +22,7 @@ struct Page {
     std::vector<PageTable> tables;        ///< above the plots: what was found; small ones stand side by side
     std::vector<Plot> plots;
     std::vector<HeatMap> maps;       ///< below the plots
+    std::vector<StackedBars> bars;   ///< below the maps
     std::vector<PageTable> details;  ///< below these
     std::string command;             ///< what made the page
 };

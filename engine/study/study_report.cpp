@@ -177,6 +177,51 @@ std::vector<HeatMap> force_maps(const std::vector<GroupForces>& groups) {
     return out;
 }
 
+std::vector<StackedBars> likert_bars(const std::vector<GroupAnswers>& groups) {
+    std::vector<StackedBars> out;
+    const auto sheets = question_sheets();
+    const auto likert = std::find_if(sheets.begin(), sheets.end(), [](const auto& s) { return s.id == "likert"; });
+    if (likert == sheets.end()) return out;
+    const auto place = static_cast<std::size_t>(likert - sheets.begin());
+    for (const GroupAnswers& group : groups) {
+        StackedBars bars;
+        bars.title = "What they said: " + group.group + ", answers from 1, strongly disagree, to 5, strongly agree";
+        for (int k = likert->least; k <= likert->most; k += likert->step) bars.parts.push_back(std::to_string(k));
+        int all = 0;
+        for (std::size_t q = 0; q < likert->questions.size(); ++q) {
+            StackedBars::Row row{std::string(likert->questions[q].text), std::vector<int>(bars.parts.size(), 0)};
+            for (const Answers& answers : group.sheets) {
+                const auto& answer = answers.sheets[place][q];
+                if (!answer) continue;
+                ++row.counts[static_cast<std::size_t>((*answer - likert->least) / likert->step)];
+                ++all;
+            }
+            bars.rows.push_back(std::move(row));
+        }
+        if (all > 0) out.push_back(std::move(bars));
+    }
+    return out;
+}
+
+PageTable scales_table(const std::vector<GroupAnswers>& groups) {
+    PageTable out{"Questionnaires, mean ± SD (n)", {"group", "usability (SUS)", "task load (raw TLX)"}, {}};
+    for (const GroupAnswers& group : groups) {
+        std::vector<double> sus, tlx;
+        for (const Answers& answers : group.sheets) {
+            if (const auto score = sus_score(answers)) sus.push_back(*score);
+            if (const auto score = tlx_score(answers)) tlx.push_back(*score);
+        }
+        if (sus.empty() && tlx.empty()) continue;
+        const auto cell = [](const std::vector<double>& values) {
+            return values.empty() ? std::string("-")
+                                  : number(mean(values)) + " ± " + number(standard_deviation(values)) + " (" +
+                                        std::to_string(values.size()) + ")";
+        };
+        out.rows.push_back({group.group, cell(sus), cell(tlx)});
+    }
+    return out;
+}
+
 Page study_page(const Protocol& protocol, const std::vector<Participant>& participants,
                 const std::vector<RunEntry>& runs) {
     Page page;

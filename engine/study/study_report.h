@@ -6,6 +6,7 @@
 
 #include "core/html_page.h"
 #include "study/protocol.h"
+#include "study/questionnaire.h"
 #include "study/run_index.h"
 #include "task/force_map.h"
 
@@ -20,6 +21,19 @@ struct GroupForces {
 
 /// One map a group, impulse a run, all to one scale; none where no run left a force map.
 std::vector<HeatMap> force_maps(const std::vector<GroupForces>& groups);
+
+/// Every answer sheet of a group.
+struct GroupAnswers {
+    std::string group;
+    std::vector<Answers> sheets;
+};
+
+/// The statements of the Likert sheet, one picture a group as figure 9 of [li2025]; groups without an answer are left
+/// out.
+std::vector<StackedBars> likert_bars(const std::vector<GroupAnswers>& groups);
+
+/// Usability score and raw task load by group, mean ± SD (n); no rows where nobody answered.
+PageTable scales_table(const std::vector<GroupAnswers>& groups);
 
 /// Time and collision by task and group as in [li2025] table 2 (mean, SD, Kruskal and Wallis), then medians, quartiles,
 /// bootstrap intervals, Mann-Whitney with Holm's correction, Cliff's delta, learning curves and every trial.  The last

@@ -129,6 +129,7 @@ TEST(HtmlPage, HoldsEverythingAndAsksForNothing) {
                     .tables = {{"t", {"", "a"}, {{"row", "1"}}}},
                     .plots = {line_plot({1.0, 2.0})},
                     .maps = {},
+                    .bars = {},
                     .details = {{"d", {"", ""}, {{"more", "2"}}}},
                     .command = "cathlab 'a b'"};
     const std::string html = html_page(page);
