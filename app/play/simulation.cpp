@@ -22,10 +22,14 @@ Vec3 isocentre_of(Session& session) {
 
 void Course::add(const Channels& c, bool wire) {
     force_bar.push_back(static_cast<float>(c.force_bar));
-    constexpr double onward_mm = 0.5;
     const Vec3 now = wire ? Vec3(c.wire_tip_x_mm, c.wire_tip_y_mm, c.wire_tip_z_mm)
                           : Vec3(c.catheter_tip_x_mm, c.catheter_tip_y_mm, c.catheter_tip_z_mm);
     if (tip.empty() || (now - tip.back()).norm() > onward_mm) tip.push_back(now);
+    constexpr std::size_t most = 8192;
+    if (tip.size() < most) return;
+    for (std::size_t i = 0; 2 * i < tip.size(); ++i) tip[i] = tip[2 * i];
+    tip.resize(most / 2);
+    onward_mm *= 2.0;
 }
 
 Simulation::Simulation(SimulationOptions options, std::shared_ptr<const SceneModels> models, const AppContext& context)

@@ -40,7 +40,8 @@ struct GoalView {
 /// For the result's plots.
 struct Course {
     std::vector<float> force_bar;  ///< one a step; 1 = the limit
-    std::vector<Vec3> tip;         ///< wherever it has moved on
+    std::vector<Vec3> tip;         ///< wherever it has moved on by onward_mm
+    double onward_mm = 0.5;        ///< grows with the way, so that its memory does not
 
     /// wire: whose tip goes on the path.
     void add(const Channels& c, bool wire);
