@@ -68,6 +68,18 @@ std::vector<double> defaults(const EffectInfo& effect) {
     return out;
 }
 
+const EffectTrial& trial_of(const FittedModel& model, const EffectInfo& effect) {
+    return *std::find_if(model.effects.begin(), model.effects.end(),
+                         [&](const EffectTrial& trial) { return trial.effect == &effect; });
+}
+
+/// All but their strengths is the same.
+bool same_shape(const EffectInfo& effect, const EffectTrial& a, const EffectTrial& b) {
+    for (std::size_t k = 0; k < effect.parameters.size(); ++k)
+        if (!is_strength(effect, effect.parameters[k]) && a.values[k] != b.values[k]) return false;
+    return true;
+}
+
 /// A place of the range where the effect certainly acts.
 std::vector<double> acting(const EffectInfo& effect) {
     std::vector<double> out = defaults(effect);
@@ -421,9 +433,11 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
     // Base numbers that are few go along from the beginning; where they are many, the effect looks where to go first.
     constexpr std::size_t few = 2;
     const bool base_too = rig_.bounds().size() <= few;
-    const std::size_t searched = rig_.slow() ? 1 : base_too && !rig_.bounds().empty() ? 4 : 2;  // of each way
+    const bool shaped = base_too && !rig_.bounds().empty() && !rig_.slow();
+    const std::size_t searched = rig_.slow() ? 1 : shaped ? 6 : 2;  // of each way
     std::vector<FittedModel> tried[2];
     const std::vector<double> usual = defaults(effect);
+    const auto better = [](const FittedModel& a, const FittedModel& b) { return a.train_cost < b.train_cost; };
     for (const std::vector<double>& values : starts(from, effect)) {
         bool back = false;
         for (std::size_t k = 0; k < values.size(); ++k)
@@ -432,11 +446,19 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
         model.residual = rig_.residual(model.base, model.effects);
         model.train_cost = cost_of(model);
         std::vector<FittedModel>& best = tried[back ? 1 : 0];
-        best.push_back(std::move(model));
-        std::sort(best.begin(), best.end(),
-                  [](const FittedModel& a, const FittedModel& b) { return a.train_cost < b.train_cost; });
-        if (best.size() > searched) best.pop_back();
+        // The base numbers have not moved yet, which favours shapes that change little: of each shape one is searched.
+        const auto alike = std::find_if(best.begin(), best.end(), [&](const FittedModel& other) {
+            return shaped && same_shape(effect, trial_of(model, effect), trial_of(other, effect));
+        });
+        if (alike == best.end())
+            best.push_back(std::move(model));
+        else if (better(model, *alike))
+            *alike = std::move(model);
+        std::sort(best.begin(), best.end(), better);
+        if (!shaped && best.size() > searched) best.pop_back();
     }
+    for (std::vector<FittedModel>& way : tried)
+        if (way.size() > searched) way.resize(searched);
     FittedModel best, own;
     own.train_cost = best.train_cost = std::numeric_limits<double>::infinity();
     if (may_differ(effect))
@@ -445,11 +467,19 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
                 FittedModel other = each_run_its_own(model, effect);
                 if (other.train_cost < own.train_cost) own = std::move(other);
             }
-    for (std::vector<FittedModel>& way : tried)
+    for (std::vector<FittedModel>& way : tried) {
+        int iterations = rig_.slow() ? 6 : 10;
+        if (shaped) {  // a few steps for all of them, more for the better half
+            for (FittedModel& model : way) refit(model, 4);
+            std::sort(way.begin(), way.end(), better);
+            way.resize((way.size() + 1) / 2);
+            iterations = 8;
+        }
         for (FittedModel& model : way) {
-            refit(model, rig_.slow() ? 6 : 10, base_too);
+            refit(model, iterations, base_too);
             if (model.train_cost < best.train_cost) best = std::move(model);
         }
+    }
     if (!rig_.slow()) refit(best, rig_.bounds().empty() ? 30 : 15);
     if (own.effects.empty()) return best;
     // Numbers of their own have to pay for themselves [schwarz1978].

@@ -97,7 +97,10 @@ std::unique_ptr<Folder> record_tension(const Recipe& r) {
     const bool stiffens = acts("stiffening");
     const auto elastic = [&](double l) {
         const double line = rubber ? modulus / 3.0 * (l - 1.0 / (l * l)) : modulus * (l - 1.0);
-        return stiffens ? line + 2200.0 * size * std::pow(std::max(0.0, l - 1.0), 3) : line;
+        if (!stiffens) return line;
+        // Collagen: crimped until the strain draws it straight, then ever stiffer.
+        const double drawn = std::max(0.0, l - 1.05);
+        return line + 30.0 * size * std::expm1(45.0 * drawn * drawn);
     };
     const auto energy = [&](double l) {
         return rubber ? modulus / 6.0 * (l * l + 2.0 / l - 3.0) : 0.5 * modulus * (l - 1.0) * (l - 1.0);
