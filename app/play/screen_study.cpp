@@ -16,7 +16,8 @@ bool draw_scale(const QuestionSheet& sheet, std::optional<int>& answer, float pi
     const float begin = ImGui::GetCursorPosX();
     for (int value = sheet.least; value <= sheet.most; value += sheet.step) {
         if (value > sheet.least) ImGui::SameLine();
-        ImGui::SetCursorPosX(begin + pitch * static_cast<float>((value - sheet.least) / sheet.step));
+        const int place = (value - sheet.least) / sheet.step;
+        ImGui::SetCursorPosX(begin + pitch * static_cast<float>(place));
         ImGui::PushID(value);
         if (ImGui::RadioButton("##answer", answer == value)) {
             answer = value;

@@ -45,7 +45,7 @@ std::uint64_t StudyDesk::seed() const {
 }
 
 std::string StudyDesk::begin() {
-    const std::string part = folder() + ".part";
+    std::string part = folder() + ".part";
     std::error_code error;
     fs::remove_all(part, error);
     if (error) throw UserError(part + ": cannot be removed: " + error.message());
@@ -53,7 +53,7 @@ std::string StudyDesk::begin() {
 }
 
 std::string StudyDesk::keep() {
-    const std::string kept = folder();
+    std::string kept = folder();
     std::error_code error;
     fs::rename(kept + ".part", kept, error);
     if (error) throw UserError(kept + ": the trial cannot be kept: " + error.message());
