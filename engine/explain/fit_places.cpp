@@ -1,6 +1,8 @@
 // Recordings that were each taken at another place: an effect with numbers of their own.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
 
 #include "core/random.h"
 #include "explain/fit.h"
@@ -86,6 +88,44 @@ FittedModel Fitter::each_run_its_own(FittedModel model, const EffectInfo& effect
     model.residual = rig_.residual(model.base, model.effects);
     refit(model, 15);
     return model;
+}
+
+EffectTrial Fitter::turned(const FittedModel& from, const EffectTrial& trial) const {
+    constexpr int places = 8;
+    EffectTrial best = trial;
+    const std::size_t phase = phase_place(*trial.effect), runs = rig_.data().run_names.size();
+    if (phase == trial.values.size() || !free_parameters(*trial.effect)[phase]) return best;
+    std::vector<double> least(runs, std::numeric_limits<double>::infinity()), place(runs, 0.0);
+    std::vector<double> all(places, 0.0);
+    for (int k = 0; k < places; ++k) {
+        EffectTrial there = trial;
+        there.values[phase] = static_cast<double>(k) / places;
+        std::vector<double> cost(runs, 0.0);
+        const Columns left = rig_.residual(from.base, beside(from, there).effects);
+        for (std::size_t c = 0; c < left.size(); ++c)
+            for (std::size_t i = 0; i < left[c].size(); ++i)
+                if (rig_.split().held_out[i] == 0 && !std::isnan(left[c][i]))
+                    cost[static_cast<std::size_t>(rig_.data().run[i])] += scale_.cost(c, left[c][i]);
+        for (std::size_t run = 0; run < runs; ++run) {
+            all[static_cast<std::size_t>(k)] += cost[run];
+            if (cost[run] >= least[run]) continue;
+            least[run] = cost[run];
+            place[run] = there.values[phase];
+        }
+    }
+    // Recordings that are long enough to say so each have their own.
+    constexpr std::size_t rows_a_run = 40;
+    if (runs > 1 && rig_.data().rows() >= rows_a_run * runs) {
+        best.values[phase] = place[0];
+        best.phase_of_run.assign(runs, 0.0);
+        for (std::size_t run = 1; run < runs; ++run) {
+            const double ahead = place[run] - place[0];
+            best.phase_of_run[run] = ahead > 0.5 ? ahead - 1.0 : (ahead < -0.5 ? ahead + 1.0 : ahead);
+        }
+    } else {
+        best.values[phase] = static_cast<double>(std::min_element(all.begin(), all.end()) - all.begin()) / places;
+    }
+    return best;
 }
 
 }  // namespace cathlab
