@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-
 #include "core/random.h"
 #include "explain/fit.h"
 
