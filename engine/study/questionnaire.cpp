@@ -126,7 +126,7 @@ Answers read_questionnaire(const std::string& path) {
         if (it == json.end() || !it->is_object()) throw UserError({path, 0, std::string(sheet.id)}, "is missing");
         for (const auto& [key, value] : it->items()) {
             const auto question = std::find_if(sheet.questions.begin(), sheet.questions.end(),
-                                               [&](const Question& q) { return q.id == key; });
+                                               [&id = key](const Question& q) { return q.id == id; });
             if (question == sheet.questions.end())
                 throw UserError({path, 0, std::string(sheet.id) + "." + key}, "is no question of this sheet");
             if (value.is_null()) continue;
