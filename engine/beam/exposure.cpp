@@ -14,6 +14,8 @@ FineSpectrum spectrum_at(const BeamSpec& spec, double kvp) {
     return fine_spectrum({kvp, spec.aluminium_mm, spec.copper_mm, spec.caesium_iodide_mm}, TableReading::straight);
 }
 
+constexpr double smallest_opening = 0.1;  // share of the field
+
 double towards(double now, double target, double most) {
     return std::isfinite(target) ? now + std::clamp(target - now, -most, most) : now;
 }
@@ -32,6 +34,9 @@ void validate(const BeamSpec& spec, const SourcePlace& where) {
     require_range(where, "primary_deg", spec.primary_deg, -180.0, 180.0);
     require_range(where, "secondary_deg", spec.secondary_deg, -90.0, 90.0);
     require_range(where, "target_kerma_ngy", spec.target_kerma_ngy, 1.0, 10000.0);
+    require_range(where, "cine_kerma_ngy", spec.cine_kerma_ngy, 1.0, 10000.0);
+    require_range(where, "dsa_kerma_ngy", spec.dsa_kerma_ngy, 1.0, 10000.0);
+    require_range(where, "dsa_pulses_per_s", spec.dsa_pulses_per_s, 0.5, 30.0);
     require_range(where, "lag_s", spec.lag_s, 0.0, 10.0);
     require_range(where, "aluminium_mm", spec.aluminium_mm, 1.0, 20.0);
     require_range(where, "copper_mm", spec.copper_mm, 0.0, 2.0);
@@ -41,6 +46,8 @@ void validate(const BeamSpec& spec, const SourcePlace& where) {
     require_range(where, "kvp_at_20_cm", spec.kvp_at_20_cm, 40.0, 150.0);
     require_range(where, "kvp_per_cm", spec.kvp_per_cm, 0.0, 20.0);
     require_range(where, "mas_max", spec.mas_max, 0.01, 1000.0);
+    require_range(where, "mas_max_acquired", spec.mas_max_acquired, 0.01, 1000.0);
+    require_range(where, "collimator_share_s", spec.collimator_share_s, 0.01, 100.0);
     require_range(where, "tube_output_ugy_mas", spec.tube_output_ugy_mas, 1.0, 1000.0);
     require_range(where, "grid_transmission", spec.grid_transmission, 0.05, 1.0);
     require_range(where, "reference_point_mm", spec.reference_point_mm, 0.0, spec.c_arm.sod_mm - 50.0);
@@ -62,6 +69,15 @@ void visit(Archive& archive, BeamState& state) {
     archive.field("dose_area_gycm2", state.dose_area_gycm2);
     archive.field("beam_time_s", state.beam_time_s);
     archive.field("frames", state.frames);
+    // What was never used is no part of the state: a run that does without has the bits of one that never heard of it.
+    std::int64_t acquisition = static_cast<std::int64_t>(state.acquisition),
+                 level = static_cast<std::int64_t>(state.level);
+    if (state.acquisition != Acquisition::fluoroscopy) archive.field("acquisition", acquisition);
+    if (state.level != FluoroscopyLevel::normal) archive.field("level", level);
+    if (state.collimator_width != 1.0) archive.field("collimator_width", state.collimator_width);
+    if (state.collimator_height != 1.0) archive.field("collimator_height", state.collimator_height);
+    if (state.roadmap) archive.field("roadmap", state.roadmap);
+    if (state.references != 0) archive.field("references", state.references);
 }
 
 BeamState initial_state(const BeamSpec& spec) {
@@ -89,7 +105,34 @@ double tube_output_ugy_mas(const BeamSpec& spec, double kvp) {
            (reference.total * reference.kerma_per_photon);
 }
 
+Technique technique_of(const BeamSpec& spec, const BeamState& state) {
+    Technique out;
+    out.open_share = state.collimator_width * state.collimator_height;
+    out.pulses_per_s = spec.pulses_per_s;
+    if (state.acquisition == Acquisition::fluoroscopy) {
+        const double share = state.level == FluoroscopyLevel::low    ? 0.5
+                             : state.level == FluoroscopyLevel::high ? 2.0
+                                                                     : 1.0;
+        out.kerma_ngy = share * spec.target_kerma_ngy;
+        out.mas_max = spec.mas_max;
+        return out;
+    }
+    out.mas_max = spec.mas_max_acquired;
+    out.rate_limited = false;
+    out.kerma_ngy = spec.cine_kerma_ngy;
+    if (state.acquisition == Acquisition::dsa) {
+        out.kerma_ngy = spec.dsa_kerma_ngy;
+        out.pulses_per_s = std::min(spec.pulses_per_s, spec.dsa_pulses_per_s);
+    }
+    return out;
+}
+
 Pulse expose(const BeamSpec& spec, double set_water_mm, double true_water_mm) {
+    return expose(spec, set_water_mm, true_water_mm,
+                  {spec.target_kerma_ngy, spec.pulses_per_s, spec.mas_max, true, 1.0});
+}
+
+Pulse expose(const BeamSpec& spec, double set_water_mm, double true_water_mm, const Technique& technique) {
     Pulse pulse;
     pulse.kvp =
         std::clamp(spec.kvp_at_20_cm + spec.kvp_per_cm * (0.1 * set_water_mm - 20.0), spec.kvp_min, spec.kvp_max);
@@ -99,14 +142,17 @@ Pulse expose(const BeamSpec& spec, double set_water_mm, double true_water_mm) {
     const double reference_mm = spec.c_arm.sod_mm - spec.reference_point_mm;
     const double to_reference = 1e6 / (reference_mm * reference_mm);
     const double wanted =
-        1e-3 * spec.target_kerma_ngy / (output * to_detector * kerma_transmission(spectrum, set_water_mm));
-    const double mgy_per_pulse_limit = spec.kerma_rate_limit_mgy_min / (60.0 * spec.pulses_per_s);
-    pulse.mas = std::min({wanted, spec.mas_max, 1e3 * mgy_per_pulse_limit / (output * to_reference)});
+        1e-3 * technique.kerma_ngy / (output * to_detector * kerma_transmission(spectrum, set_water_mm));
+    pulse.mas = std::min(wanted, technique.mas_max);
+    if (technique.rate_limited) {
+        const double mgy_per_pulse_limit = spec.kerma_rate_limit_mgy_min / (60.0 * technique.pulses_per_s);
+        pulse.mas = std::min(pulse.mas, 1e3 * mgy_per_pulse_limit / (output * to_reference));
+    }
     pulse.detector_kerma_ngy = 1e3 * output * pulse.mas * to_detector * kerma_transmission(spectrum, true_water_mm);
     pulse.reference_kerma_mgy = 1e-3 * output * pulse.mas * to_reference;
     const double side_cm = 0.1 * spec.c_arm.field_mm * reference_mm / spec.c_arm.sid_mm;
     const double aspect = static_cast<double>(spec.c_arm.rows) / static_cast<double>(spec.c_arm.columns);
-    pulse.dose_area_gycm2 = 1e-3 * pulse.reference_kerma_mgy * side_cm * side_cm * aspect;
+    pulse.dose_area_gycm2 = 1e-3 * pulse.reference_kerma_mgy * side_cm * side_cm * aspect * technique.open_share;
     return pulse;
 }
 
@@ -122,6 +168,18 @@ bool advance(const BeamSpec& spec, BeamState& state, const BeamCommand& command,
     const double way = spec.table_mm_s * dt;
     state.table_longitudinal_mm = towards(state.table_longitudinal_mm, command.table_longitudinal_mm, way);
     state.table_lateral_mm = towards(state.table_lateral_mm, command.table_lateral_mm, way);
+    const double opening = spec.collimator_share_s * dt;
+    const auto blades = [&](double now, double wanted) {
+        return std::clamp(towards(now, std::clamp(wanted, smallest_opening, 1.0), opening), smallest_opening, 1.0);
+    };
+    state.collimator_width = blades(state.collimator_width, command.collimator_width);
+    state.collimator_height = blades(state.collimator_height, command.collimator_height);
+    if (command.reference && !state.reference_key) ++state.references;
+    state.reference_key = command.reference;
+    state.roadmap = command.roadmap;
+    if (command.pedal && (!state.pedal || command.acquisition != state.acquisition)) ++state.series;
+    state.acquisition = command.acquisition;
+    state.level = command.level;
     state.pedal = command.pedal;
     if (!command.pedal) {
         state.kerma_rate_mgy_min = 0.0;
@@ -132,11 +190,12 @@ bool advance(const BeamSpec& spec, BeamState& state, const BeamCommand& command,
     const double kept = spec.lag_s > 0.0 ? det::exp(-dt / spec.lag_s) : 0.0;
     state.water_mm = truth + kept * (state.water_mm - truth);
     state.beam_time_s += dt;
-    if (!pulse_in_step(step, dt, spec.pulses_per_s)) return false;
-    const Pulse pulse = expose(spec, state.water_mm, truth);
+    const Technique technique = technique_of(spec, state);
+    if (!pulse_in_step(step, dt, technique.pulses_per_s)) return false;
+    const Pulse pulse = expose(spec, state.water_mm, truth, technique);
     state.kvp = pulse.kvp;
     state.mas = pulse.mas;
-    state.kerma_rate_mgy_min = 60.0 * spec.pulses_per_s * pulse.reference_kerma_mgy;
+    state.kerma_rate_mgy_min = 60.0 * technique.pulses_per_s * pulse.reference_kerma_mgy;
     state.detector_kerma_ngy = pulse.detector_kerma_ngy;
     state.air_kerma_mgy += pulse.reference_kerma_mgy;
     state.dose_area_gycm2 += pulse.dose_area_gycm2;

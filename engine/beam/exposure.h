@@ -10,6 +10,12 @@
 
 namespace cathlab {
 
+/// What the pedal exposes.  Fluoroscopy is looked at, cine is kept, a DSA series is subtracted from its first pictures.
+enum class Acquisition : std::uint8_t { fluoroscopy, cine, dsa };
+
+/// Dose of fluoroscopy: half, once and twice the target.
+enum class FluoroscopyLevel : std::uint8_t { low, normal, high };
+
 /// Const after load.  Defaults: a flat-panel cardiac system at normal fluoroscopic dose.
 struct BeamSpec {
     CArmSpec c_arm;
@@ -19,6 +25,9 @@ struct BeamSpec {
     double table_mm_s = 150.0;        ///< how fast the table goes (an assumption)
     double pulses_per_s = 15.0;       ///< 7.5, 15 or 30
     double target_kerma_ngy = 40.0;   ///< at the detector, per frame; 20 low, 40 normal, 80 high, 170 cine
+    double cine_kerma_ngy = 170.0;    ///< of a cine picture
+    double dsa_kerma_ngy = 3000.0;    ///< of a picture of a DSA series
+    double dsa_pulses_per_s = 7.5;    ///< at most
     double lag_s = 0.5;               ///< time constant of the exposure control, 0.3 to 1 in practice
     double aluminium_mm = 2.5;        ///< inherent filtration
     double copper_mm = 0.3;           ///< added filtration
@@ -26,12 +35,14 @@ struct BeamSpec {
     double kvp_min = 60.0, kvp_max = 120.0;
     double kvp_at_20_cm = 78.0;  ///< voltage curve: kVp = kvp_at_20_cm + kvp_per_cm (water - 20 cm), within its range
     double kvp_per_cm = 2.2;
-    double mas_max = 4.0;  ///< of one pulse
+    double mas_max = 4.0;             ///< of one pulse
+    double mas_max_acquired = 100.0;  ///< of one pulse of cine or DSA (an assumption)
+    double collimator_share_s = 1.0;  ///< how fast a pair of blades moves, shares of the field a second (an assumption)
     double tube_output_ugy_mas =
         45.0;  ///< air kerma 1 m from the focus per mAs at 80 kVp behind 2.5 mm Al (an assumption)
     double grid_transmission = 0.65;         ///< of the primary beam, anti-scatter grid and table (an assumption)
     double reference_point_mm = 150.0;       ///< from the isocentre towards the tube [iec60601-2-43]
-    double kerma_rate_limit_mgy_min = 88.0;  ///< at the reference point [cfr1020-32]
+    double kerma_rate_limit_mgy_min = 88.0;  ///< at the reference point, of fluoroscopy [cfr1020-32]
 };
 
 /// Throws UserError: a rate that is not 7.5, 15 or 30, numbers out of range, a reference point behind the tube.
@@ -53,6 +64,14 @@ struct BeamState {
     double dose_area_gycm2 = 0.0;        ///< cumulative
     double beam_time_s = 0.0;            ///< cumulative pedal time
     std::int64_t frames = 0;             ///< pulses since the start
+    Acquisition acquisition = Acquisition::fluoroscopy;  ///< what the pedal exposes
+    FluoroscopyLevel level = FluoroscopyLevel::normal;
+    std::int64_t series = 0;         ///< how often the pedal went down or changed what it exposes
+    double collimator_width = 1.0;   ///< share of the field's width that is open, as reached
+    double collimator_height = 1.0;  ///< likewise
+    bool roadmap = false;            ///< the fluoroscopy is shown over the vessels of the last series with medium
+    std::int64_t references = 0;     ///< how often the picture was kept as the reference
+    bool reference_key = false;      ///< down during the last step
 };
 void visit(Archive& archive, BeamState& state);
 
@@ -67,6 +86,12 @@ struct BeamCommand {
     bool pedal = false;
     double table_longitudinal_mm = 0.0;  ///< wanted
     double table_lateral_mm = 0.0;
+    Acquisition acquisition = Acquisition::fluoroscopy;
+    FluoroscopyLevel level = FluoroscopyLevel::normal;
+    double collimator_width = 1.0;   ///< wanted, share of the field, (0, 1]
+    double collimator_height = 1.0;  ///< wanted
+    bool roadmap = false;
+    bool reference = false;  ///< the picture is kept as this goes up
 };
 
 /// What one pulse does, in closed form: kerma at distance r = output(kvp) mas (1 m / r)^2; the detector gets the part
@@ -78,7 +103,21 @@ struct Pulse {
     double dose_area_gycm2 = 0.0;
 };
 
-/// The pulse with which the control, set to set_water_mm, exposes a patient of true_water_mm.
+/// What the control is to reach, and within which limits.
+struct Technique {
+    double kerma_ngy = 40.0;     ///< at the detector, a picture
+    double pulses_per_s = 15.0;  ///< a series of subtraction is slower
+    double mas_max = 4.0;
+    bool rate_limited = true;  ///< by kerma_rate_limit_mgy_min, which binds fluoroscopy, not what is recorded
+    double open_share = 1.0;   ///< part of the field's area that the collimator leaves
+};
+
+/// For what the pedal exposes, with the collimator as it stands.
+Technique technique_of(const BeamSpec& spec, const BeamState& state);
+
+/// The pulse with which the control, set to set_water_mm, exposes a patient of true_water_mm.  The two-argument form:
+/// fluoroscopy at normal dose, the whole field.
+Pulse expose(const BeamSpec& spec, double set_water_mm, double true_water_mm, const Technique& technique);
 Pulse expose(const BeamSpec& spec, double set_water_mm, double true_water_mm);
 
 /// Air kerma per mAs at 1 m behind the filters, uGy, at a voltage.

@@ -20,6 +20,9 @@
 #include "render/pixel_loops.h"
 #include "render/projection.h"
 #include "render/scatter.h"
+#include "render/shutter.h"
+#include "render/subtraction.h"
+#include "render/view_key.h"
 
 namespace cathlab {
 
@@ -29,6 +32,10 @@ constexpr int device_samples = 3;             // rays a side and pixel: a wire i
 constexpr double scatter_sigma_mm = 40.0;     // width of the scatter kernel at the detector
 constexpr double usual_magnification = 1.45;  // SID / SOD of C-arms: 1.4 to 1.5
 constexpr double harmonisation_sigma_mm = 25.0;
+constexpr float blade_transmission = 1e-4F;           // of 3 mm lead: 4e-4 at 80 keV, less below
+constexpr double dsa_window = 1.2, dsa_level = 0.82;  // width in ln, grey of what has not changed
+constexpr double roadmap_share = 0.7;
+constexpr double other_dose = 1.4;  // a kerma that differs by more restarts the temporal filter
 
 // mu of what is drawn minus mu of what it displaces: exponents are linear, so nested media need no boolean operations.
 BinValues difference(const BeamTable& beam, const std::string& inside, const std::string& outside) {
@@ -38,45 +45,9 @@ BinValues difference(const BeamTable& beam, const std::string& inside, const std
     return mu;
 }
 
-// Generators step by whole kilovolts; so the context is not made anew for every small turn of the exposure control.
-double generator_kvp(const FrameExposure& e) {
-    return std::round(e.kvp);
-}
-
 double magnification(const CArmView& view, const Projection& projection) {
     return view.source_isocentre_mm > 0 ? projection.source_detector_mm() / view.source_isocentre_mm
                                         : usual_magnification;
-}
-
-struct ViewKey {
-    std::vector<double> numbers;
-    bool operator==(const ViewKey&) const = default;
-};
-
-void append(ViewKey& key, const Vec3& v) {
-    key.numbers.insert(key.numbers.end(), v.data(), v.data() + 3);
-}
-
-ViewKey view_key(const FrameDescription& f, int width, int height) {
-    ViewKey key;
-    for (const Vec3& v : {f.view.source, f.view.detector_center, f.view.right, f.view.down}) append(key, v);
-    key.numbers.insert(key.numbers.end(),
-                       {f.view.width_mm, f.view.height_mm, f.view.source_isocentre_mm, double(width), double(height)});
-    return key;
-}
-
-ViewKey context_key(const FrameDescription& f, int width, int height) {
-    ViewKey key = view_key(f, width, height);
-    key.numbers.insert(key.numbers.end(),
-                       {generator_kvp(f.exposure), f.exposure.copper_mm, f.exposure.scatter_to_primary.value_or(-1.0),
-                        f.exposure.measuring_field, double(f.solids_revision)});
-    for (const FrameSolid& solid : f.solids) {
-        if (solid.moving) continue;
-        append(key, solid.pose.position);
-        const auto& q = solid.pose.orientation.coeffs();
-        key.numbers.insert(key.numbers.end(), q.data(), q.data() + 4);
-    }
-    return key;
 }
 
 static_assert(pixel_loops::bins == energy_bins);
@@ -131,7 +102,10 @@ struct Fluoroscope::Impl {
     std::vector<Part> parts;  // kept for their memory; the first part_count are the frame's
     std::size_t part_count = 0;
     ImageF intensity, signal, history, log_image;
-    std::vector<std::uint8_t> grey;
+    double history_kerma = 0;
+    Subtraction subtraction;
+    std::uint64_t references = 0;
+    std::vector<std::uint8_t> grey, reference_grey;
 
     void use_beam(const FrameExposure& e) {
         const double kvp = generator_kvp(e);
@@ -182,7 +156,7 @@ struct Fluoroscope::Impl {
     void draw_all_devices(const FrameDescription& f, const Projection& projection);
     void combine();
     void detect(const FrameDescription& f, const Projection& projection);
-    void display(const FrameExposure& e);
+    void display(const FrameDescription& f);
     void add_exponent(std::size_t i, BinValues& exponent) const;
     void attenuate_pixels(Batch& batch);
 };
@@ -213,7 +187,10 @@ void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection
             const Vec3 hit =
                 projection.to_detector(static_cast<double>(i - row * columns) + 0.5, static_cast<double>(row) + 0.5);
             const double cosine = projection.source_detector_mm() / std::sqrt(hit.squaredNorm());
-            const auto geometry = static_cast<float>(cosine * cosine * cosine);
+            auto geometry = static_cast<float>(cosine * cosine * cosine);
+            const bool lit = is_open(static_cast<double>(i - row * columns) + 0.5, width, f.view.open_width) &&
+                             is_open(static_cast<double>(row) + 0.5, projection.height(), f.view.open_height);
+            if (!lit) geometry *= blade_transmission;
             float sum = 0;
             for (std::size_t k = 0; k < energy_bins; ++k) {
                 transmission[i][k] = geometry * beam->weights()[k] * fast_exp(-exponent[i][k]);
@@ -222,19 +199,24 @@ void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection
             context_intensity.values[i] = sum;
         }
     });
+    // The measuring field stays within what the collimator leaves open.
     const double side = std::clamp(f.exposure.measuring_field, 0.05, 1.0);
-    const auto inside = [&](int v, int n) { return std::fabs((v + 0.5) / n - 0.5) <= 0.5 * side; };
+    const auto inside = [&](int x, int y) {
+        return is_open(x + 0.5, width, std::min(side, 0.9 * f.view.open_width)) &&
+               is_open(y + 0.5, projection.height(), std::min(side, 0.9 * f.view.open_height));
+    };
     double sum = 0, sum_of_logs = 0;
     std::size_t pixels = 0;
     for (int y = 0; y < projection.height(); ++y) {
         for (int x = 0; x < width; ++x) {
-            if (!inside(y, projection.height()) || !inside(x, width)) continue;
+            if (!inside(x, y)) continue;
             sum += context_intensity.at(x, y);
             ++pixels;
         }
     }
     const double water_mm = beam->water_mm(sum / static_cast<double>(pixels));
-    const double lit_mm = projection.pixel_mm() * width / magnification(f.view, projection);
+    const double lit_mm = projection.pixel_mm() * width * std::sqrt(f.view.open_width * f.view.open_height) /
+                          magnification(f.view, projection);
     const double share = f.exposure.scatter_to_primary.value_or(scatter_to_primary(water_mm, lit_mm));
     scatter = wide_blur(context_intensity, scatter_sigma_mm / projection.pixel_mm());
     for (float& s : scatter.values) s *= static_cast<float>(share);
@@ -247,15 +229,21 @@ void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection
             const std::size_t i = logs.offset(x, y);
             const float total = std::max(1e-12F, context_intensity.values[i] + scatter.values[i]);
             logs.values[i] = fast_log(total);
-            if (inside(y, projection.height()) && inside(x, width)) {
+            if (inside(x, y)) {
                 sum += total;
                 sum_of_logs += logs.values[i];
             }
         }
     }
     reference = sum / static_cast<double>(pixels);
-    coarse_log = wide_blur(logs, harmonisation_sigma_mm / projection.pixel_mm());
     coarse_mean = sum_of_logs / static_cast<double>(pixels);
+    // What the blades shade must not darken its surroundings: it counts as the field's mean.
+    for (int y = 0; y < projection.height(); ++y)
+        for (int x = 0; x < width; ++x)
+            if (!is_open(x + 0.5, width, f.view.open_width) ||
+                !is_open(y + 0.5, projection.height(), f.view.open_height))
+                logs.values[logs.offset(x, y)] = static_cast<float>(coarse_mean);
+    coarse_log = wide_blur(logs, harmonisation_sigma_mm / projection.pixel_mm());
 }
 
 void Fluoroscope::Impl::draw_moving(const FrameDescription& f, const Projection& projection) {
@@ -379,10 +367,16 @@ void Fluoroscope::Impl::detect(const FrameDescription& f, const Projection& proj
     blur(signal, e.detector.blur_sigma_mm / projection.pixel_mm(), workers);
     distort(signal, e.detector, projection.pixel_mm(), workers);
     add_electronic_noise(signal, e.detector.electronic_noise_photons, f.seed, f.frame_index, workers);
+    // A picture of a subtracted series stands for itself, and one of another dose has another number of quanta.
+    const bool other =
+        history_kerma > 0 && std::fabs(std::log(e.detector_kerma_ngy / history_kerma)) > std::log(other_dose);
+    if (f.series.subtracted || other) history = {};
+    history_kerma = e.detector_kerma_ngy;
     recurse(history, signal, e.recursion, workers);
 }
 
-void Fluoroscope::Impl::display(const FrameExposure& e) {
+void Fluoroscope::Impl::display(const FrameDescription& f) {
+    const FrameExposure& e = f.exposure;
     const int width = history.width, height = history.height;
     const auto columns = static_cast<std::size_t>(width);
     log_image.width = width;
@@ -396,9 +390,18 @@ void Fluoroscope::Impl::display(const FrameExposure& e) {
         loops.to_log(history.values.data() + begin * columns, coarse_log.values.data() + begin * columns, unit, even,
                      mean, (end - begin) * columns, log_image.values.data() + begin * columns);
     });
+    if (f.series.number != subtraction.series()) subtraction.begin(f.series.number);
+    if (f.series.subtracted || f.series.collected) {
+        const double kept = f.series.subtracted ? 1.0 : std::sqrt((1 - e.recursion) / (1 + e.recursion));
+        subtraction.add(log_image, f.series.collected && !f.lumen.contrast_mg_ml.empty(),
+                        kept / std::sqrt(std::max(1.0, photons_of_kerma)), workers);
+    }
+    const bool subtracted = f.series.subtracted && subtraction.has_mask();
+    if (subtracted) subtraction.subtract(log_image);
+    if (f.series.roadmap && !f.series.subtracted) subtraction.lay_roadmap(log_image, roadmap_share);
     const auto edge = static_cast<float>(0.25 * e.edge_enhancement);
-    const auto scale = static_cast<float>(255.0 / e.window);
-    const auto offset = static_cast<float>(255.0 * e.level);
+    const auto scale = static_cast<float>(255.0 / (subtracted ? dsa_window : e.window));
+    const auto offset = static_cast<float>(255.0 * (subtracted ? dsa_level : e.level));
     grey.resize(history.values.size());
     workers.for_ranges(static_cast<std::size_t>(height), 32, [&](std::size_t begin, std::size_t end) {
         std::vector<float> padded(columns + 2);
@@ -412,6 +415,7 @@ void Fluoroscope::Impl::display(const FrameExposure& e) {
             loops.sharpen(padded.data(), above, below, edge, scale, offset, columns, grey.data() + y * columns);
         }
     });
+    blacken_shaded(f.view, columns, grey);
 }
 
 Fluoroscope::Fluoroscope(std::shared_ptr<GlDevice> device, Workers workers)
@@ -421,6 +425,10 @@ Fluoroscope::~Fluoroscope() = default;
 const std::vector<std::uint8_t>& Fluoroscope::draw(const FrameDescription& frame, int width, int height) {
     Impl& self = *impl_;
     const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    if (frame.series.references != self.references) {
+        self.references = frame.series.references;
+        self.reference_grey = self.grey;
+    }
     if (!frame.beam_on) {  // last image hold; black before the first exposure
         self.grey.resize(count, 0);
         return self.grey;
@@ -429,7 +437,10 @@ const std::vector<std::uint8_t>& Fluoroscope::draw(const FrameDescription& frame
     self.use_beam(frame.exposure);
     self.upload_solids(frame);
     ViewKey view = view_key(frame, width, height);
-    if (!(view == self.view)) self.history = {};
+    if (!(view == self.view)) {
+        self.history = {};
+        self.subtraction.forget();
+    }
     self.view = std::move(view);
     ViewKey context = context_key(frame, width, height);
     if (!(context == self.context)) {
@@ -443,7 +454,7 @@ const std::vector<std::uint8_t>& Fluoroscope::draw(const FrameDescription& frame
     self.draw_all_devices(frame, projection);
     self.combine();
     self.detect(frame, projection);
-    self.display(frame.exposure);
+    self.display(frame);
     return self.grey;
 }
 
@@ -456,6 +467,12 @@ const ImageF& Fluoroscope::detected() const {
 const std::vector<std::uint8_t>& Fluoroscope::grey() const {
     return impl_->grey;
 }
+const std::vector<std::uint8_t>& Fluoroscope::reference() const {
+    return impl_->reference_grey;
+}
+bool Fluoroscope::has_roadmap() const {
+    return impl_->subtraction.has_roadmap();
+}
 double Fluoroscope::wanted_photons() const {
     return impl_->photons_of_kerma;
 }
@@ -464,6 +481,8 @@ std::size_t Fluoroscope::bad_pixels() const {
 }
 void Fluoroscope::reset() {
     impl_->history = {};
+    impl_->subtraction.forget();
+    impl_->reference_grey.clear();
     impl_->context = {};
     impl_->solids_known = false;
 }

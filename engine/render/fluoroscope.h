@@ -30,6 +30,10 @@ public:
     const ImageF& detected() const;
     /// The last picture, as draw() gave it.
     const std::vector<std::uint8_t>& grey() const;
+    /// The picture that was kept as the reference, as large as the last one; empty where none was.
+    const std::vector<std::uint8_t>& reference() const;
+    /// Whether there is a roadmap of the present view.
+    bool has_roadmap() const;
     /// Detected photons a pixel that the last frame's kerma means.
     double wanted_photons() const;
     /// Rays of the last frame whose entries and exits do not match (open surfaces); must be 0.

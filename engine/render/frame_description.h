@@ -21,6 +21,8 @@ struct CArmView {
     Vec3 down = Vec3(0, 0, -1);  ///< unit vector down the image, orthogonal to right
     double width_mm = 300.0;     ///< extent of the picture at the detector
     double height_mm = 300.0;
+    double open_width = 1.0;  ///< share of it that the collimator leaves open, (0, 1]
+    double open_height = 1.0;
     double source_isocentre_mm = 0.0;  ///< sets the focal spot's blur, M = SID / SOD; 0: M = 1.45
 };
 
@@ -91,6 +93,15 @@ struct FrameExposure {
     double measuring_field = 0.5;    ///< side of the central square that holds the kerma, share of the picture
 };
 
+/// What is made of a series of pictures.  The renderer keeps what it needs of those that it has drawn.
+struct FrameSeries {
+    std::uint64_t number = 0;  ///< another number: another series, with another mask
+    bool subtracted = false;   ///< DSA: ln(picture) - ln(mask), the mask being the mean of the series' first pictures
+    bool collected = false;  ///< the deepest shadow of the medium is kept as the roadmap (where there is medium at all)
+    bool roadmap = false;    ///< the vessels of the roadmap lie bright under the picture, if it is from the same place
+    std::uint64_t references = 0;  ///< as this changes, the last picture is kept as the reference
+};
+
 /// A camera at the device's tip.
 struct FrameCamera {
     Pose pose;                      ///< z forward, x right, y down
@@ -107,6 +118,7 @@ struct FrameDescription {
     bool show_fluoroscopy = true;
     bool show_inner_view = true;
     bool show_outer_view = false;  ///< third person: below the inner view, or in its place
+    bool show_reference = false;   ///< the reference picture: likewise
 
     std::uint64_t seed = 1;
     std::uint64_t frame_index = 0;  ///< noise is a pure function of (seed, frame_index, pixel)
@@ -114,6 +126,7 @@ struct FrameDescription {
 
     CArmView view;
     FrameExposure exposure;
+    FrameSeries series;
     std::vector<FrameSolid> solids;
     std::uint64_t solids_revision = 0;  ///< raise it when a mesh or material of `solids` changes
     FrameLumen lumen;

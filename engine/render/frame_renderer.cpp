@@ -15,19 +15,23 @@ namespace cathlab {
 FrameLayout layout_of(const FrameDescription& frame) {
     FrameLayout layout;
     const int w = frame.width, h = frame.height;
-    const bool beside = frame.show_inner_view || frame.show_outer_view;
+    const int beside = int{frame.show_inner_view} + int{frame.show_outer_view} + int{frame.show_reference};
     FrameRect rest{0, 0, w, h};
     if (frame.show_fluoroscopy) {
-        const int side = beside ? std::min(h, w / 2) : std::min(h, w);
-        layout.fluoroscopy = {beside ? 0 : (w - side) / 2, (h - side) / 2, side, side};
+        const int side = beside > 0 ? std::min(h, w / 2) : std::min(h, w);
+        layout.fluoroscopy = {beside > 0 ? 0 : (w - side) / 2, (h - side) / 2, side, side};
         rest = {side, (h - side) / 2, w - side, side};
     }
-    if (!beside) return layout;
-    const int upper = frame.show_inner_view && frame.show_outer_view ? rest.height / 2 : rest.height;
-    if (frame.show_inner_view) layout.inner_view = {rest.x, rest.y, rest.width, upper};
-    if (frame.show_outer_view)
-        layout.outer_view =
-            frame.show_inner_view ? FrameRect{rest.x, rest.y + upper, rest.width, rest.height - upper} : rest;
+    int place = 0;
+    const auto next = [&](bool shown, FrameRect& out) {
+        if (!shown) return;
+        const int top = rest.height * place / beside, bottom = rest.height * (place + 1) / beside;
+        out = {rest.x, rest.y + top, rest.width, bottom - top};
+        ++place;
+    };
+    next(frame.show_inner_view, layout.inner_view);
+    next(frame.show_outer_view, layout.outer_view);
+    next(frame.show_reference, layout.reference);
     return layout;
 }
 
@@ -48,6 +52,23 @@ struct FrameRenderer::Impl {
 
     void begin(std::string_view name) const {
         if (probe) probe(name);
+    }
+
+    // The largest centred square of its place, sampled at the nearest pixel; black without a reference.
+    void paste_reference(const FrameLayout& layout, Image8& out) const {
+        const std::vector<std::uint8_t>& grey = fluoroscope.reference();
+        const auto from = static_cast<std::size_t>(layout.fluoroscopy.width);
+        if (grey.empty() || grey.size() != from * from) return;
+        const FrameRect& r = layout.reference;
+        const int side = std::min(r.width, r.height);
+        for (int y = 0; y < side; ++y) {
+            std::uint8_t* row =
+                out.rgb.data() + out.offset(r.x + (r.width - side) / 2, r.y + (r.height - side) / 2 + y);
+            const std::size_t source = from * static_cast<std::size_t>(y) / static_cast<std::size_t>(side) * from;
+            for (int x = 0; x < side; ++x, row += 3)
+                row[0] = row[1] = row[2] =
+                    grey[source + from * static_cast<std::size_t>(x) / static_cast<std::size_t>(side)];
+        }
     }
 };
 
@@ -83,6 +104,7 @@ void FrameRenderer::render(const FrameDescription& frame, Image8& out) {
         impl_->outer_view.draw(frame, layout.outer_view.width, layout.outer_view.height, impl_->part);
         paste(out, impl_->part, layout.outer_view.x, layout.outer_view.y);
     }
+    if (layout.reference.width > 0) impl_->paste_reference(layout, out);
     impl_->begin("overlay");
     impl_->overlay.draw(frame.overlay, out);
 }
@@ -98,6 +120,12 @@ const ImageF& FrameRenderer::detected() const {
 }
 const std::vector<std::uint8_t>& FrameRenderer::fluoroscopy() const {
     return impl_->fluoroscope.grey();
+}
+const std::vector<std::uint8_t>& FrameRenderer::reference() const {
+    return impl_->fluoroscope.reference();
+}
+bool FrameRenderer::has_roadmap() const {
+    return impl_->fluoroscope.has_roadmap();
 }
 double FrameRenderer::wanted_photons() const {
     return impl_->fluoroscope.wanted_photons();

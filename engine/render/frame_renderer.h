@@ -21,10 +21,11 @@ struct FrameRect {
     int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Where the parts of a picture stand.  The fluoroscopy takes a square at the left, inner and outer view the rest, one
-/// above the other where both are shown; one view alone: the largest centred square (fluoroscopy) or everything.
+/// Where the parts of a picture stand.  The fluoroscopy takes a square at the left, inner view, outer view and
+/// reference share the rest, one above the other; one view alone: the largest centred square (fluoroscopy) or
+/// everything.
 struct FrameLayout {
-    FrameRect fluoroscopy, inner_view, outer_view;
+    FrameRect fluoroscopy, inner_view, outer_view, reference;
 };
 FrameLayout layout_of(const FrameDescription& frame);
 
@@ -46,6 +47,10 @@ public:
     const ImageF& detected() const;
     /// The last fluoroscopy as it is shown, without the panels: grey, one byte a pixel, rows from the top.
     const std::vector<std::uint8_t>& fluoroscopy() const;
+    /// The picture that was kept as the reference, likewise; empty where none was.
+    const std::vector<std::uint8_t>& reference() const;
+    /// Whether there is a roadmap of the present view.
+    bool has_roadmap() const;
     /// Detected photons a pixel that the exposure of the last frame asks for in the measuring field.
     double wanted_photons() const;
     /// Forgets the last frames (temporal filter, held image): the start of another run.

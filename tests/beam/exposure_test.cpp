@@ -115,3 +115,121 @@ TEST(Beam, NonsenseIsRefused) {
     spec.copper_mm = std::nan("");
     EXPECT_THROW(validate(spec), UserError);
 }
+
+namespace {
+
+BeamCommand pressed(Acquisition acquisition = Acquisition::fluoroscopy) {
+    BeamCommand command;
+    command.pedal = true;
+    command.acquisition = acquisition;
+    return command;
+}
+
+// Counts and names what a state's visit shows.
+class Fields : public Archive {
+public:
+    std::size_t count = 0;
+
+protected:
+    void numbers(std::string_view, double*, std::size_t) override { ++count; }
+    void numbers(std::string_view, float*, std::size_t) override { ++count; }
+    void numbers(std::string_view, std::int64_t*, std::size_t) override { ++count; }
+};
+
+std::size_t fields_of(BeamState state) {
+    Fields fields;
+    visit(fields, state);
+    return fields.count;
+}
+
+}  // namespace
+
+TEST(Beam, EachWayOfExposingReachesItsOwnKerma) {
+    const BeamSpec spec;
+    BeamState state = initial_state(spec);
+    const auto kerma = [&] {
+        const Technique technique = technique_of(spec, state);
+        return expose(spec, 200.0, 200.0, technique).detector_kerma_ngy;
+    };
+    EXPECT_NEAR(kerma(), 40.0, 1e-9);
+    state.level = FluoroscopyLevel::low;
+    EXPECT_NEAR(kerma(), 20.0, 1e-9);
+    state.level = FluoroscopyLevel::high;
+    EXPECT_NEAR(kerma(), 80.0, 1e-9);
+    state.acquisition = Acquisition::cine;
+    EXPECT_NEAR(kerma(), 170.0, 1e-9);
+    state.acquisition = Acquisition::dsa;
+    EXPECT_NEAR(kerma(), 3000.0, 1e-6);
+}
+
+TEST(Beam, ASubtractionSeriesIsSlowerAndEachSeriesHasItsNumber) {
+    const BeamSpec spec;
+    BeamState state = initial_state(spec);
+    std::int64_t step = 0;
+    const auto run = [&](const BeamCommand& command, int steps) {
+        const std::int64_t before = state.frames;
+        for (int k = 0; k < steps; ++k, ++step) advance(spec, state, command, 200.0, step, 0.02);
+        return state.frames - before;
+    };
+    EXPECT_EQ(run(pressed(), 100), 30);
+    EXPECT_EQ(state.series, 1);
+    EXPECT_EQ(run(pressed(Acquisition::dsa), 100), 15);
+    EXPECT_EQ(state.series, 2);  // without letting the pedal go
+    run({}, 10);
+    EXPECT_EQ(state.series, 2);
+    run(pressed(), 10);
+    EXPECT_EQ(state.series, 3);
+}
+
+TEST(Beam, TheCollimatorTakesDoseAreaAndLeavesKerma) {
+    const BeamSpec spec;
+    BeamState state = initial_state(spec);
+    BeamCommand command = pressed();
+    command.collimator_width = 0.5;
+    command.collimator_height = 0.4;
+    BeamCommand closing = command;
+    closing.pedal = false;
+    for (int step = 0; step < 50; ++step) advance(spec, state, closing, 200.0, step, 0.02);
+    EXPECT_EQ(state.collimator_width, 0.5);  // blades take their time, then stand
+    EXPECT_EQ(state.collimator_height, 0.4);
+    BeamState open = initial_state(spec);
+    for (int step = 50; step < 100; ++step) {
+        advance(spec, state, command, 200.0, step, 0.02);
+        advance(spec, open, pressed(), 200.0, step, 0.02);
+    }
+    EXPECT_NEAR(state.dose_area_gycm2 / open.dose_area_gycm2, 0.2, 1e-12);
+    EXPECT_EQ(state.air_kerma_mgy, open.air_kerma_mgy);
+}
+
+TEST(Beam, TheBladesKeepTheirSpeedAndNeverShutTheField) {
+    const BeamSpec spec;
+    BeamState state = initial_state(spec);
+    BeamCommand command;
+    command.collimator_width = -3.0;
+    advance(spec, state, command, 200.0, 0, 0.02);
+    EXPECT_NEAR(state.collimator_width, 0.98, 1e-12);
+    for (int step = 1; step < 200; ++step) advance(spec, state, command, 200.0, step, 0.02);
+    EXPECT_EQ(state.collimator_width, 0.1);
+}
+
+TEST(Beam, TheReferenceIsKeptOnceForEachPressOfItsKey) {
+    const BeamSpec spec;
+    BeamState state = initial_state(spec);
+    BeamCommand down;
+    down.reference = true;
+    for (int step = 0; step < 10; ++step) advance(spec, state, down, 200.0, step, 0.02);
+    EXPECT_EQ(state.references, 1);
+    advance(spec, state, {}, 200.0, 10, 0.02);
+    advance(spec, state, down, 200.0, 11, 0.02);
+    EXPECT_EQ(state.references, 2);
+}
+
+TEST(Beam, WhatWasNeverUsedIsNoPartOfTheState) {
+    const BeamSpec spec;
+    BeamState state = initial_state(spec);
+    for (int step = 0; step < 100; ++step) advance(spec, state, pressed(), 200.0, step, 0.02);
+    EXPECT_EQ(fields_of(state), fields_of(initial_state(spec)));
+    BeamState cine = state;
+    advance(spec, cine, pressed(Acquisition::cine), 200.0, 100, 0.02);
+    EXPECT_GT(fields_of(cine), fields_of(state));
+}
