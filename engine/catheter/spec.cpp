@@ -37,6 +37,7 @@ void validate(const CatheterSpec& spec, const SourcePlace& where) {
     require_range(where, "max_speed_mm_s", spec.max_speed_mm_s, 0.1, 1000.0);
     require_range(where, "max_rotation_deg_s", spec.max_rotation_deg_s, 0.1, 3600.0);
     require_range(where, "friction", spec.friction, 0.0, 2.0);
+    require_range(where, "wire_friction", spec.wire_friction, 0.0, 2.0);
     require_range(where, "bending_stiffness_n_mm2", spec.bending_stiffness_n_mm2, 0.1, 1e6);
     require_range(where, "force_limit_n", spec.force_limit_n, 0.001, 100.0);
     require_range(where, "tip_force_limit_n", spec.tip_force_limit_n, 0.001, 100.0);

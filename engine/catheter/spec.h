@@ -33,6 +33,7 @@ struct CatheterSpec {
     double max_rotation_deg_s = 360.0;
     double bending_stiffness_n_mm2 = 200.0;  ///< EI of the steerable part; a stiffer guidewire inside leads it
     double friction = 0.1;                   ///< Coulomb coefficient against the wall
+    double wire_friction = 0.1;              ///< the same against a guidewire that lies beside it, 0 .. 2
     double force_limit_n = 3.0;              ///< the sum of its contact forces beyond which it gives way (give_way.h)
     double tip_force_limit_n = 3.0;          ///< the same for the last 10 mm
     double penetration_limit_mm = 0.5;       ///< deepest predicted penetration that a command may cause

@@ -26,19 +26,6 @@ TrianglePoint on_triangle(const LumenSurfaceModel& model, const LumenSurfaceStat
     return closest_on_triangle(p, state.vertices[at(t[0])], state.vertices[at(t[1])], state.vertices[at(t[2])]);
 }
 
-/// Whether a triangle's own box is further from p than sqrt(bound2): a fifth of the work of the exact answer, which it
-/// spares where a wall is crumpled and a leaf's box holds half of it.  The slack is above what rounding makes of
-/// either.
-bool beyond(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p, Index triangle,
-            double bound2) {
-    constexpr double slack_mm2 = 1e-9;
-    const Triangle& t = model.triangles[at(triangle)];
-    SurfaceBox box{state.vertices[at(t[0])], state.vertices[at(t[0])]};
-    box.add(state.vertices[at(t[1])]);
-    box.add(state.vertices[at(t[2])]);
-    return box.squared_distance(p) > bound2 + slack_mm2;
-}
-
 struct Nearest {
     Index triangle = -1;
     TrianglePoint foot;
@@ -149,9 +136,7 @@ SurfacePoint closest(const LumenSurfaceModel& model, const LumenSurfaceState& st
     // off.
     visit_triangles(
         model, state, near, p, [&] { return best.foot.squared_distance * (1.0 + 1e-12); },
-        [&](Index t) {
-            if (!beyond(model, state, p, t, best.foot.squared_distance)) best.offer(t, on_triangle(model, state, p, t));
-        });
+        [&](Index t) { best.offer(t, on_triangle(model, state, p, t)); });
     if (best.triangle < 0) return {};
 
     const bool near_hint = hint >= 0 && hint2 <= hint_reach_mm * hint_reach_mm;
@@ -219,7 +204,7 @@ std::vector<SurfacePoint> further_walls(const LumenSurfaceModel& model, const Lu
     visit_triangles(
         model, state, near, p, [&] { return reach2; },
         [&](Index t) {
-            if (t == nearest.triangle || beyond(model, state, p, t, reach2)) return;
+            if (t == nearest.triangle) return;
             // Most triangles of a wide vessel face as the nearest one does: sorted out before anything dear.
             const Triangle& corner = model.triangles[at(t)];
             const Vec3& a = state.vertices[at(corner[0])];

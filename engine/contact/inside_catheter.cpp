@@ -70,7 +70,11 @@ void add_bore_rows(const CatheterBore& bore, std::span<const RodSample> samples,
 }
 
 void add_outside_rows(const CatheterOutside& catheter, std::span<const RodSample> samples,
-                      std::span<const std::size_t> beside, std::vector<ChainRow>& rows) {
+                      std::span<const SampleMotion> motion, std::span<const std::size_t> beside,
+                      std::vector<ChainRow>& rows) {
+    CATHLAB_CHECK(motion.size() == samples.size(), "one motion a sample");
+    CATHLAB_CHECK(catheter.line_before.empty() || catheter.line_before.size() == catheter.line.points.size(),
+                  "one earlier place a point of the catheter");
     CATHLAB_CHECK(catheter.radius_mm > 0.0 && catheter.compliance > 0.0, "a catheter's wall has a radius and yields");
     const std::span<const Vec3> line = catheter.line.points;
     CATHLAB_CHECK(line.size() == catheter.line.arc.size(), "one arc length a point of the catheter");
@@ -86,19 +90,24 @@ void add_outside_rows(const CatheterOutside& catheter, std::span<const RodSample
         if (((low.array() - reach) > s.position.array()).any() || ((high.array() + reach) < s.position.array()).any())
             continue;
         double best = reach * reach;
-        Vec3 foot = Vec3::Zero(), along = Vec3::Zero();
+        Vec3 foot = Vec3::Zero(), along = Vec3::Zero(), foot_way = Vec3::Zero();
         bool found = false, first = true;
         for (std::size_t i = 0; i + 1 < line.size(); ++i) {
             const Vec3 edge = line[i + 1] - line[i];
             const double length2 = edge.squaredNorm();
             if (catheter.line.arc[i] < catheter.near_mouth_mm || length2 == 0.0) continue;
             const double part = (s.position - line[i]).dot(edge) / length2;
-            const Vec3 point = line[i] + std::clamp(part, 0.0, 1.0) * edge;
+            const double share = std::clamp(part, 0.0, 1.0);
+            const Vec3 point = line[i] + share * edge;
             const double d = (s.position - point).squaredNorm();
             if (d < best) {
                 best = d;
                 foot = point;
                 along = edge;
+                if (!catheter.line_before.empty()) {
+                    const Vec3& a = catheter.line_before[i];
+                    foot_way = point - (a + share * (catheter.line_before[i + 1] - a));
+                }
                 found = !(first && part < 0.0);  // beside it, not in the mouth
             }
             first = false;
@@ -120,6 +129,9 @@ void add_outside_rows(const CatheterOutside& catheter, std::span<const RodSample
         row.arm = s.arm - s.radius * away;
         row.gap = std::max(distance - touching, -catheter.deepest_mm);
         row.compliance = catheter.compliance;
+        row.friction = catheter.friction;
+        const Vec3 slip = motion[k].way - foot_way - s.radius * motion[k].rotation.cross(away);
+        row.slip = slip - slip.dot(away) * away;
         rows.push_back(row);
     }
 }

@@ -36,12 +36,24 @@ struct CatheterOutside {
     double margin_mm = 0.0;      ///< rows are made up to this distance between the surfaces
     double deepest_mm = 0.0;     ///< a wire that is deeper in is pushed out as if it were so deep: it is not shot out
     double near_mouth_mm = 0.0;  ///< so far from the catheter's sheath both come out of it, and nothing touches
+    double friction = 0.0;       ///< Coulomb coefficient against a wire, >= 0
+    std::span<const Vec3> line_before = {};  ///< the line's points when the substep began (the same material), mm;
+                                             ///< empty = the catheter stands still
+};
+
+/// What a sample of the wire has done since the substep began: the wire's side of friction.
+struct SampleMotion {
+    Vec3 way = Vec3::Zero();       ///< of its centre, mm
+    Vec3 rotation = Vec3::Zero();  ///< rotation vector of its link, rad
 };
 
 /// Appends one row for each sample (its place in `samples` named by `beside`) that is near the catheter's side: along
-/// the way from the nearest point of the centre-line, without friction; the tip is round.  The wire that comes out of
-/// the tip is the caller's to leave out.
+/// the way from the nearest point of the centre-line; the tip is round.  The wire that comes out of the tip is the
+/// caller's to leave out.  motion: one a sample.  Friction begins anew in every substep: what slides is held back by
+/// the coefficient times the load, what sticks creeps (chain_rows.cpp, creep_mm_s); the catheter's turn about its own
+/// axis does not rub.
 void add_outside_rows(const CatheterOutside& catheter, std::span<const RodSample> samples,
-                      std::span<const std::size_t> beside, std::vector<ChainRow>& rows);
+                      std::span<const SampleMotion> motion, std::span<const std::size_t> beside,
+                      std::vector<ChainRow>& rows);
 
 }  // namespace cathlab

@@ -98,7 +98,7 @@ void update(const LumenSurfaceModel& model, std::span<const Vec3> particle_posit
     CATHLAB_CHECK(particle_positions.size() >= at(model.particle_count), "the surface is bound to more particles");
     state.vertices.resize(model.vertex_count());
     evaluate_all(model.binding, particle_positions, state.vertices, workers);
-    refit(model.tree, state.vertices, state.boxes, workers);
+    refit(model.tree, model.triangles, state.vertices, state.boxes, workers);
 }
 
 void update(const LumenSurfaceModel& model, std::span<const Vec3> particle_positions, const TreePart& part,
@@ -110,7 +110,7 @@ void update(const LumenSurfaceModel& model, std::span<const Vec3> particle_posit
             state.vertices[v] = evaluate(model.binding, v, particle_positions);
         }
     });
-    refit(model.tree, part, state.vertices, state.boxes, workers);
+    refit(model.tree, part, model.triangles, state.vertices, state.boxes, workers);
 }
 
 Vec3 inward_triangle_normal(const LumenSurfaceModel& model, const LumenSurfaceState& state, Index triangle) {

@@ -30,8 +30,8 @@ struct LumenSurfaceModel {
 
 /// Follows from the particles alone, so it is not part of a state hash.
 struct LumenSurfaceState {
-    std::vector<Vec3> vertices;     ///< (n) mm, world, now
-    std::vector<SurfaceBox> boxes;  ///< one a node of the tree
+    std::vector<Vec3> vertices;  ///< (n) mm, world, now
+    TreeBoxes boxes;             ///< of the tree
 };
 
 /// Builds adjacency and tree on the surface at rest.  vertex_region and vertex_radius hold one entry a vertex (or none:

@@ -1,34 +1,49 @@
 #include "contact/push_out.h"
 
 #include <algorithm>
+#include <map>
 
 namespace cathlab {
 namespace {
 
 constexpr int rounds = 12;
 constexpr double reach_mm = 6.0;  // a sample's centre further from the wall than this is not in it
+// Beside a fixed part the particles that are free have little say in a point.  Less than this share of it, and it
+// counts as fixed; with more, none goes further in a round than so many times the way that the point wants, nor in all
+// rounds further than so far.
+constexpr double least_share = 0.1;
+constexpr double farthest = 3.0;
+constexpr double most_mm = 4.0;
 
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
 
-// Moves the wall at a point of a triangle by `way`, as far as its particles are free.
+// Moves the wall at a point of a triangle by `way`, as far as its particles are free.  start: where those that have
+// been moved lay at first.
 void move_wall(const LumenSurfaceModel& model, const SurfacePoint& point, const Vec3& way,
-               std::span<const double> particle_compliance, std::span<Vec3> particles) {
+               std::span<const double> particle_compliance, std::span<Vec3> particles, std::map<Index, Vec3>& start) {
     const auto each = [&](const auto& visit) {
         for (int corner = 0; corner < 3; ++corner) {
             const std::size_t v = at(model.triangles[at(point.triangle)][corner]);
-            for (Index b = model.binding.start[v]; b < model.binding.start[v + 1]; ++b) {
-                const Index particle = model.binding.particle[at(b)];
-                if (particle_compliance[at(particle)] > 0.0)
-                    visit(particle, point.barycentric[corner] * model.binding.weight[at(b)]);
-            }
+            for (Index b = model.binding.start[v]; b < model.binding.start[v + 1]; ++b)
+                visit(model.binding.particle[at(b)], point.barycentric[corner] * model.binding.weight[at(b)]);
         }
     };
-    double squared = 0.0;
-    each([&](Index, double weight) { squared += weight * weight; });
-    if (squared < 1e-6) return;
-    each([&](Index particle, double weight) { particles[at(particle)] += weight / squared * way; });
+    double all = 0.0, free = 0.0;
+    each([&](Index particle, double weight) {
+        all += weight * weight;
+        if (particle_compliance[at(particle)] > 0.0) free += weight * weight;
+    });
+    if (free <= least_share * all) return;
+    each([&](Index particle, double weight) {
+        if (!(particle_compliance[at(particle)] > 0.0)) return;
+        Vec3& x = particles[at(particle)];
+        const Vec3& first = start.try_emplace(particle, x).first->second;
+        const Vec3 moved = x + std::clamp(weight / free, -farthest, farthest) * way - first;
+        const double far = moved.norm();
+        x = first + (far > most_mm ? Vec3(most_mm / far * moved) : moved);
+    });
 }
 
 }  // namespace
@@ -39,6 +54,7 @@ double push_out(const LumenSurfaceModel& model, const TreePart& near, const Cont
     std::vector<Index> touching;
     for (const WallRow& row : contacts.wall_rows())
         if (touching.empty() || touching.back() != row.sample) touching.push_back(row.sample);
+    std::map<Index, Vec3> start;
     double deepest = 0.0;
     for (int round = 0; round < rounds; ++round) {
         update(model, particles, near, surface, workers);
@@ -50,7 +66,7 @@ double push_out(const LumenSurfaceModel& model, const TreePart& near, const Cont
             const double depth = sample.radius - wall.signed_distance;
             deepest = std::max(deepest, depth);
             if (depth > depth_mm)
-                move_wall(model, wall, (depth_mm - depth) * wall.inward_normal, particle_compliance, particles);
+                move_wall(model, wall, (depth_mm - depth) * wall.inward_normal, particle_compliance, particles, start);
         }
         if (deepest <= depth_mm + 0.01) break;
     }

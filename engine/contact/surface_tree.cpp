@@ -78,13 +78,24 @@ SurfaceTree build_surface_tree(std::span<const Triangle> triangles, std::span<co
 
 namespace {
 
-SurfaceBox leaf_box(const SurfaceTree& tree, std::size_t leaf, std::span<const Vec3> vertices) {
-    const auto first = static_cast<std::size_t>(tree.leaf_vertex_start[leaf]);
-    const auto last = static_cast<std::size_t>(tree.leaf_vertex_start[leaf + 1]);
-    SurfaceBox box{vertices[static_cast<std::size_t>(tree.leaf_vertex[first])], Vec3::Zero()};
-    box.high = box.low;
-    for (std::size_t i = first + 1; i < last; ++i) box.add(vertices[static_cast<std::size_t>(tree.leaf_vertex[i])]);
-    return box;
+void fit_leaf(const SurfaceTree& tree, std::size_t leaf, std::span<const Triangle> triangles,
+              std::span<const Vec3> vertices, TreeBoxes& boxes) {
+    const auto n = static_cast<std::size_t>(tree.leaves[leaf]);
+    const auto first = static_cast<std::size_t>(tree.nodes[n].first);
+    const auto end = first + static_cast<std::size_t>(tree.nodes[n].count);
+    for (std::size_t i = first; i < end; ++i) {
+        const Triangle& t = triangles[static_cast<std::size_t>(tree.order[i])];
+        SurfaceBox& box = boxes.place[i];
+        box.low = box.high = vertices[static_cast<std::size_t>(t[0])];
+        box.add(vertices[static_cast<std::size_t>(t[1])]);
+        box.add(vertices[static_cast<std::size_t>(t[2])]);
+    }
+    SurfaceBox& whole = boxes.node[n];
+    whole = boxes.place[first];
+    for (std::size_t i = first + 1; i < end; ++i) {
+        whole.add(boxes.place[i].low);
+        whole.add(boxes.place[i].high);
+    }
 }
 
 SurfaceBox inner_box(const SurfaceTree& tree, std::size_t node, const std::vector<SurfaceBox>& boxes) {
@@ -97,33 +108,30 @@ SurfaceBox inner_box(const SurfaceTree& tree, std::size_t node, const std::vecto
 
 }  // namespace
 
-void refit(const SurfaceTree& tree, std::span<const Vec3> vertices, std::vector<SurfaceBox>& boxes,
-           const Workers& workers) {
-    boxes.resize(tree.nodes.size());
+void refit(const SurfaceTree& tree, std::span<const Triangle> triangles, std::span<const Vec3> vertices,
+           TreeBoxes& boxes, const Workers& workers) {
+    boxes.node.resize(tree.nodes.size());
+    boxes.place.resize(tree.order.size());
     workers.for_ranges(tree.leaves.size(), leaf_grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t l = begin; l < end; ++l)
-            boxes[static_cast<std::size_t>(tree.leaves[l])] = leaf_box(tree, l, vertices);
+        for (std::size_t l = begin; l < end; ++l) fit_leaf(tree, l, triangles, vertices, boxes);
     });
     for (std::size_t n = tree.nodes.size(); n-- > 0;)
-        if (tree.nodes[n].count == 0) boxes[n] = inner_box(tree, n, boxes);
+        if (tree.nodes[n].count == 0) boxes.node[n] = inner_box(tree, n, boxes.node);
 }
 
-void refit(const SurfaceTree& tree, const TreePart& part, std::span<const Vec3> vertices,
-           std::vector<SurfaceBox>& boxes, const Workers& workers) {
+void refit(const SurfaceTree& tree, const TreePart& part, std::span<const Triangle> triangles,
+           std::span<const Vec3> vertices, TreeBoxes& boxes, const Workers& workers) {
     workers.for_ranges(part.leaves.size(), leaf_grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            const auto l = static_cast<std::size_t>(part.leaves[k]);
-            boxes[static_cast<std::size_t>(tree.leaves[l])] = leaf_box(tree, l, vertices);
-        }
+        for (std::size_t k = begin; k < end; ++k)
+            fit_leaf(tree, static_cast<std::size_t>(part.leaves[k]), triangles, vertices, boxes);
     });
     for (const Index n : part.inner) {
         const auto node = static_cast<std::size_t>(n);
-        boxes[node] = inner_box(tree, node, boxes);
+        boxes.node[node] = inner_box(tree, node, boxes.node);
     }
 }
 
-TreePart part_near(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes, std::span<const Vec3> places,
-                   double reach) {
+TreePart part_near(const SurfaceTree& tree, const TreeBoxes& boxes, std::span<const Vec3> places, double reach) {
     std::vector<std::uint8_t> wanted(tree.nodes.size(), 0);
     NearLeaves near;
     for (std::size_t i = 0; i < places.size();) {
@@ -155,8 +163,7 @@ TreePart part_near(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes
     return part;
 }
 
-void NearLeaves::gather(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes, const Vec3& centre,
-                        double radius) {
+void NearLeaves::gather(const SurfaceTree& tree, const TreeBoxes& boxes, const Vec3& centre, double radius) {
     nodes.clear();
     if (tree.nodes.empty()) return;
     const double bound = radius * radius;
@@ -165,7 +172,7 @@ void NearLeaves::gather(const SurfaceTree& tree, const std::vector<SurfaceBox>& 
     stack[top++] = 0;
     while (top > 0) {
         const Index n = stack[--top];
-        if (boxes[static_cast<std::size_t>(n)].squared_distance(centre) > bound) continue;
+        if (boxes.node[static_cast<std::size_t>(n)].squared_distance(centre) > bound) continue;
         const SurfaceTree::Node& node = tree.nodes[static_cast<std::size_t>(n)];
         if (node.count > 0) {
             nodes.push_back(n);

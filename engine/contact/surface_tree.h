@@ -50,10 +50,15 @@ struct SurfaceTree {
 /// Splits at the median centroid along the longest axis; ties by triangle index, so the same mesh gives the same tree.
 SurfaceTree build_surface_tree(std::span<const Triangle> triangles, std::span<const Vec3> vertices);
 
-/// Boxes (one a node) around the triangles where they are now.  min and max are exact: any thread count gives the same
-/// bits.
-void refit(const SurfaceTree& tree, std::span<const Vec3> vertices, std::vector<SurfaceBox>& boxes,
-           const Workers& workers);
+/// The boxes of a tree around its triangles where they are now.
+struct TreeBoxes {
+    std::vector<SurfaceBox> node;   ///< one a node
+    std::vector<SurfaceBox> place;  ///< one a place in `order`, so that a leaf's lie side by side
+};
+
+/// min and max are exact: any thread count gives the same bits.
+void refit(const SurfaceTree& tree, std::span<const Triangle> triangles, std::span<const Vec3> vertices,
+           TreeBoxes& boxes, const Workers& workers);
 
 /// A part of the tree: some leaves and all nodes above them.
 struct TreePart {
@@ -63,18 +68,28 @@ struct TreePart {
 };
 
 /// The leaves whose boxes come within `reach` of any of `places`, which lie near each other as they follow.
-TreePart part_near(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes, std::span<const Vec3> places,
-                   double reach);
+TreePart part_near(const SurfaceTree& tree, const TreeBoxes& boxes, std::span<const Vec3> places, double reach);
 
 /// The boxes of a part; the others stay as they are.
-void refit(const SurfaceTree& tree, const TreePart& part, std::span<const Vec3> vertices,
-           std::vector<SurfaceBox>& boxes, const Workers& workers);
+void refit(const SurfaceTree& tree, const TreePart& part, std::span<const Triangle> triangles,
+           std::span<const Vec3> vertices, TreeBoxes& boxes, const Workers& workers);
 
-/// Calls visit(triangle) for every triangle whose leaf box is within sqrt(bound()) of p, near boxes first; bound() is
-/// asked again at every box, so visit may shrink it.
+/// The triangles of a leaf whose own boxes are within sqrt(bound()) of p.  A box is a fifth of the work of an exact
+/// answer, which it spares where a wall is crumpled and a leaf's box holds half of it.
 template <class Visit, class Bound>
-void for_near_triangles(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes, const Vec3& p,
-                        const Bound& bound, const Visit& visit) {
+void for_triangles_of(const SurfaceTree& tree, const SurfaceTree::Node& leaf, const TreeBoxes& boxes, const Vec3& p,
+                      const Bound& bound, const Visit& visit) {
+    // Above what rounding makes of a box's distance or of a triangle's.
+    constexpr double slack_mm2 = 1e-9;
+    for (auto i = static_cast<std::size_t>(leaf.first); i < static_cast<std::size_t>(leaf.first + leaf.count); ++i)
+        if (boxes.place[i].squared_distance(p) <= bound() + slack_mm2) visit(tree.order[i]);
+}
+
+/// Calls visit(triangle) for every triangle whose box is within sqrt(bound()) of p, near leaves first; bound() is asked
+/// again at every box, so visit may shrink it.
+template <class Visit, class Bound>
+void for_near_triangles(const SurfaceTree& tree, const TreeBoxes& boxes, const Vec3& p, const Bound& bound,
+                        const Visit& visit) {
     struct Entry {
         Index node;
         double distance;
@@ -82,17 +97,17 @@ void for_near_triangles(const SurfaceTree& tree, const std::vector<SurfaceBox>& 
     Entry stack[64];  // the tree is balanced: its depth is log2 of the triangles, below 32
     int top = 0;
     if (tree.nodes.empty()) return;
-    stack[top++] = {0, boxes[0].squared_distance(p)};
+    stack[top++] = {0, boxes.node[0].squared_distance(p)};
     while (top > 0) {
         const Entry entry = stack[--top];
         if (entry.distance > bound()) continue;
         const SurfaceTree::Node& node = tree.nodes[static_cast<std::size_t>(entry.node)];
         if (node.count > 0) {
-            for (Index i = node.first; i < node.first + node.count; ++i) visit(tree.order[static_cast<std::size_t>(i)]);
+            for_triangles_of(tree, node, boxes, p, bound, visit);
             continue;
         }
-        const double left = boxes[static_cast<std::size_t>(node.first)].squared_distance(p);
-        const double right = boxes[static_cast<std::size_t>(node.first) + 1].squared_distance(p);
+        const double left = boxes.node[static_cast<std::size_t>(node.first)].squared_distance(p);
+        const double right = boxes.node[static_cast<std::size_t>(node.first) + 1].squared_distance(p);
         const bool left_first = left <= right;
         stack[top++] = left_first ? Entry{node.first + 1, right} : Entry{node.first, left};
         stack[top++] = left_first ? Entry{node.first, left} : Entry{node.first + 1, right};
@@ -104,17 +119,16 @@ void for_near_triangles(const SurfaceTree& tree, const std::vector<SurfaceBox>& 
 struct NearLeaves {
     std::vector<Index> nodes;
 
-    void gather(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes, const Vec3& centre, double radius);
+    void gather(const SurfaceTree& tree, const TreeBoxes& boxes, const Vec3& centre, double radius);
 };
 
 /// The same over some leaves, in their order.
 template <class Visit, class Bound>
-void for_near_triangles(const SurfaceTree& tree, const std::vector<SurfaceBox>& boxes, const NearLeaves& leaves,
-                        const Vec3& p, const Bound& bound, const Visit& visit) {
+void for_near_triangles(const SurfaceTree& tree, const TreeBoxes& boxes, const NearLeaves& leaves, const Vec3& p,
+                        const Bound& bound, const Visit& visit) {
     for (const Index leaf : leaves.nodes) {
-        if (boxes[static_cast<std::size_t>(leaf)].squared_distance(p) > bound()) continue;
-        const SurfaceTree::Node& node = tree.nodes[static_cast<std::size_t>(leaf)];
-        for (Index i = node.first; i < node.first + node.count; ++i) visit(tree.order[static_cast<std::size_t>(i)]);
+        if (boxes.node[static_cast<std::size_t>(leaf)].squared_distance(p) > bound()) continue;
+        for_triangles_of(tree, tree.nodes[static_cast<std::size_t>(leaf)], boxes, p, bound, visit);
     }
 }
 

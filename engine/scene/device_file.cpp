@@ -82,6 +82,8 @@ Table<CatheterFile> make_catheter_table() {
             .number("max_speed_mm_s", &CatheterSpec::max_speed_mm_s, "mm/s", {0.1, 1000}, "fastest insertion")
             .number("max_rotation_deg_s", &CatheterSpec::max_rotation_deg_s, "deg/s", {0.1, 10000}, "fastest turning")
             .number("friction", &CatheterSpec::friction, "1", {0, 2}, "Coulomb coefficient against the wall")
+            .number("wire_friction", &CatheterSpec::wire_friction, "1", {0, 2},
+                    "Coulomb coefficient against a guidewire that lies beside it")
             .number("bending_stiffness_n_mm2", &CatheterSpec::bending_stiffness_n_mm2, "N mm2", {0.1, 1e6},
                     "EI of the steerable part; a stiffer guidewire inside leads it along the vessel")
             .number("force_limit_n", &CatheterSpec::force_limit_n, "N", {0.001, 100},

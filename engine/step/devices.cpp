@@ -85,6 +85,7 @@ void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceS
     samples.wire_arc.clear();
     samples.wire_free.clear();
     samples.link_before.clear();
+    samples.catheter_before.clear();
     samples.list.clear();
     if (p.wire) {
         const Rod& wire = *p.wire;
@@ -118,6 +119,9 @@ void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceS
     }
     if (p.catheter) {
         const CatheterShape& now = p.catheter_route->shape;
+        for (const double arc : now.arc)
+            samples.catheter_before.push_back(
+                point_at(catheter_before, catheter_before.arc.back() - (now.arc.back() - arc)));
         const AtTheWall at_wall(*p.contacts, catheter_device);
         for (std::size_t k = 0; k < now.points.size(); ++k) {
             const std::size_t i = now.points.size() - 1 - k;        // from the tip
@@ -127,7 +131,7 @@ void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceS
                 continue;
             DeviceSample d;
             d.position = now.points[i];
-            d.previous = point_at(catheter_before, catheter_before.arc.back() - from_tip);
+            d.previous = samples.catheter_before[i];
             d.radius = p.catheter->radius_mm();
             d.device = catheter_device;
             d.arc_mm = from_tip;

@@ -15,6 +15,7 @@ struct DeviceSamples {
     std::vector<double> wire_arc;        ///< of each, mm from the wire's tip
     std::vector<std::size_t> wire_free;  ///< which of them lie outside the catheter: these meet the wall
     std::vector<Quat> link_before;       ///< orientation of every link when the substep began
+    std::vector<Vec3> catheter_before;   ///< where the points of the catheter's line now lay when the substep began, mm
     std::vector<DeviceSample> list;      ///< first the wire's free ones, then the catheter's, tip first
 };
 

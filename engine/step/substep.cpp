@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "contact/push_out.h"
+#include "core/deterministic_math.h"
 #include "core/units.h"
 #include "step/catheter_drive.h"
 #include "step/devices.h"
@@ -88,6 +89,7 @@ void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<Ch
     if (p.catheter) {
         std::vector<ChainRow> fresh;
         std::vector<RodSample> now = samples.wire;
+        std::vector<SampleMotion> motion(now.size());
         std::vector<double> from_mouth;
         const double insertion = p.wire->insertion_mm();
         for (std::size_t i = 0; i < now.size(); ++i) {
@@ -95,6 +97,7 @@ void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<Ch
             const Quat turn = pose.orientation * samples.link_before[static_cast<std::size_t>(now[i].link)].conjugate();
             now[i].arm = turn * now[i].arm;
             now[i].position = pose.position + now[i].arm;
+            motion[i] = {now[i].position - samples.wire[i].position, det::vector_from_rotation(turn)};
             from_mouth.push_back(insertion - samples.wire_arc[i]);
         }
         const CatheterBore bore = catheter_bore(p);
@@ -109,8 +112,10 @@ void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<Ch
                           outside_compliance,
                           p.settings->contact_margin_mm,
                           outside_deepest_mm,
-                          ahead},
-                         now, beside, fresh);
+                          ahead,
+                          p.catheter->wire_friction,
+                          samples.catheter_before},
+                         now, motion, beside, fresh);
         bore_rows = std::move(fresh);
         rows.insert(rows.end(), bore_rows.begin(), bore_rows.end());
     }

@@ -229,9 +229,9 @@ TEST(LumenSurface, TheUpdateDoesNotDependOnTheNumberOfThreads) {
     const TriMesh mesh = test::straight_tube(10.0, 200.0, 250, 40);
     const Surface one(mesh, 1);
     const Surface three(mesh, 3);
-    for (std::size_t n = 0; n < one.state.boxes.size(); ++n) {
-        ASSERT_EQ(one.state.boxes[n].low, three.state.boxes[n].low);
-        ASSERT_EQ(one.state.boxes[n].high, three.state.boxes[n].high);
+    for (std::size_t n = 0; n < one.state.boxes.node.size(); ++n) {
+        ASSERT_EQ(one.state.boxes.node[n].low, three.state.boxes.node[n].low);
+        ASSERT_EQ(one.state.boxes.node[n].high, three.state.boxes.node[n].high);
     }
 }
 

@@ -250,5 +250,25 @@ TEST(PushOut, WhatIsTooDeepIsTakenOutByMovingTheWallAlone) {
     }
 }
 
+TEST(PushOut, BesideAFixedEndNoParticleIsThrownAbout) {
+    // Between the fixed ring and the free wall a point's free particles may weigh a thousandth of it.
+    for (double z = 0.25; z < 8.0; z += 0.25) {
+        SoftWall wall(5.0, 40.0);
+        wall.predict_all();
+        std::vector<DeviceSample> samples(1);
+        samples[0].position = Vec3(5.0, 0.3, z);
+        samples[0].previous = Vec3(4.0, 0.3, z);
+        samples[0].radius = 1.0;
+        ContactSet contacts;
+        wall.detect(contacts, samples);
+        const TreePart near =
+            part_near(wall.surface.tree, wall.surface_state.boxes, std::vector<Vec3>{samples[0].position}, 4.5);
+        push_out(wall.surface, near, contacts, samples, 0.2, wall.scratch.compliance, wall.state.x, wall.surface_state,
+                 wall.workers);
+        for (std::size_t i = 0; i < wall.model.size(); ++i)
+            EXPECT_LT((wall.state.x[i] - wall.model.rest[i]).norm(), 4.0 + 1e-9) << "at " << z << " mm, particle " << i;
+    }
+}
+
 }  // namespace
 }  // namespace cathlab
