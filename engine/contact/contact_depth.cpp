@@ -27,9 +27,9 @@ bool ContactSet::presses(std::span<const DeviceSample> samples_now, double force
     return false;
 }
 
-double ContactSet::true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
-                              std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const {
-    double depth = 0.0;
+TrueDepth ContactSet::true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
+                                 std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const {
+    TrueDepth deepest;
     Index last = -1;
     for (std::size_t r = 0; r < rows_.size(); ++r) {
         if (wall_[r].sample == last || !presses_hard(r, samples_now, force_mn, front_mn)) continue;
@@ -37,9 +37,10 @@ double ContactSet::true_depth(const LumenSurfaceModel& model, const LumenSurface
         last = wall_[r].sample;
         const SurfacePoint nearest =
             closest(model, surface, s.position, settings_.recovery_mm, memory_.triangle[at(last)]);
-        if (nearest.found()) depth = std::max(depth, s.radius - nearest.signed_distance);
+        const double depth = nearest.found() ? s.radius - nearest.signed_distance : 0.0;
+        if (depth > deepest.mm) deepest = {depth, s.device};
     }
-    return depth;
+    return deepest;
 }
 
 }  // namespace cathlab

@@ -84,6 +84,12 @@ struct TipYield {
     Vec3 way = Vec3::Zero();            ///< the one that the samples' positions hold; on return the new one
 };
 
+/// The deepest place that was looked at truly, and the device there.
+struct TrueDepth {
+    double mm = 0.0;
+    Index device = -1;  ///< -1 = none
+};
+
 class ContactSet {
 public:
     explicit ContactSet(const ContactSettings& settings = {});
@@ -111,8 +117,8 @@ public:
     /// How deep, mm, >= 0, the samples that carry more than `force_mn`, those of a front end (DeviceSample::walls) more
     /// than `front_mn`, or that lie deep by a row of their own, are in the surface as it is now.  Rows hold the wall's
     /// facets as they lay at detect; under a tip that presses they turn.  Where it is large, detect again.
-    double true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
-                      std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const;
+    TrueDepth true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
+                         std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const;
     /// Whether any sample carries so much.
     bool presses(std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const;
 

@@ -1,6 +1,7 @@
 #include "contact/push_out.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 namespace cathlab {
@@ -14,6 +15,8 @@ constexpr double reach_mm = 6.0;  // a sample's centre further from the wall tha
 constexpr double least_share = 0.1;
 constexpr double farthest = 3.0;
 constexpr double most_mm = 4.0;
+// A round that leaves something so much deeper than the best one was the last.
+constexpr double worse_mm = 0.3;
 
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
@@ -54,23 +57,35 @@ double push_out(const LumenSurfaceModel& model, const TreePart& near, const Cont
     std::vector<Index> touching;
     for (const WallRow& row : contacts.wall_rows())
         if (touching.empty() || touching.back() != row.sample) touching.push_back(row.sample);
-    std::map<Index, Vec3> start;
-    double deepest = 0.0;
-    for (int round = 0; round < rounds; ++round) {
+    std::map<Index, Vec3> start, best;  // of the particles moved so far: where they lay at first, and in the best round
+    double least = std::numeric_limits<double>::infinity();
+    for (int round = 0;; ++round) {
         update(model, particles, near, surface, workers);
-        deepest = 0.0;
+        double deepest = 0.0;
+        std::vector<SurfacePoint> wall;
         for (const Index s : touching) {
-            const DeviceSample& sample = samples[at(s)];
-            const SurfacePoint wall = closest(model, surface, sample.position, reach_mm, contacts.hint(at(s)));
-            if (!wall.found()) continue;
-            const double depth = sample.radius - wall.signed_distance;
-            deepest = std::max(deepest, depth);
-            if (depth > depth_mm)
-                move_wall(model, wall, (depth_mm - depth) * wall.inward_normal, particle_compliance, particles, start);
+            wall.push_back(closest(model, surface, samples[at(s)].position, reach_mm, contacts.hint(at(s))));
+            if (wall.back().found()) deepest = std::max(deepest, samples[at(s)].radius - wall.back().signed_distance);
         }
-        if (deepest <= depth_mm + 0.01) break;
+        if (deepest < least) {
+            least = deepest;
+            best.clear();
+            for (const auto& [particle, first] : start) best.emplace(particle, particles[at(particle)]);
+        }
+        if (deepest <= depth_mm + 0.01 || round == rounds || deepest > least + worse_mm) break;
+        for (std::size_t k = 0; k < touching.size(); ++k) {
+            const double depth = samples[at(touching[k])].radius - wall[k].signed_distance;
+            if (wall[k].found() && depth > depth_mm)
+                move_wall(model, wall[k], (depth_mm - depth) * wall[k].inward_normal, particle_compliance, particles,
+                          start);
+        }
     }
-    return deepest;
+    // In a wall that is crumpled up the shortest way out may lead through its other side.
+    for (const auto& [particle, first] : start) {
+        const auto kept = best.find(particle);
+        particles[at(particle)] = kept == best.end() ? first : kept->second;
+    }
+    return least;
 }
 
 }  // namespace cathlab

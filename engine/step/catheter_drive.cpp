@@ -202,8 +202,8 @@ double depth_in_wall(const Parts& p) {
 }
 
 // The guidewire that sticks out of the catheter has no say in where the catheter takes it.  While it is pressed into
-// the wall beyond the limits of its own drive the catheter may only give way, that is
-// withdraw and straighten.  True if that took a part of the command.
+// the wall beyond the limits of its own drive, or the catheter itself stuck deep in it, the catheter may only give way,
+// that is withdraw and straighten.  True if that took a part of the command.
 bool wire_presses(const WireDrive& drive, const StepSettings& settings) {
     return drive.penetration_mm > settings.wire_penetration_limit_mm ||
            drive.contact_mn > settings.wire_contact_limit_mn;
@@ -262,7 +262,7 @@ double move_catheter(Parts& p, const Input& input, const SegmentBends& bends, do
     const double limit = route.insertion_limit_mm;
     WallAround around = wall_around(p, start);
     std::vector<WallLimit>& limits = around.limits;
-    bool held = p.wire && wire_presses(*p.wire_drive, *p.settings) && hold_back(command, state);
+    bool held = (route.stuck || (p.wire && wire_presses(*p.wire_drive, *p.settings))) && hold_back(command, state);
     if (around.load > yielding_from) {
         const double share = std::min(1.0, (around.load - yielding_from) / (1.0 - yielding_from));
         const CatheterCommand yielding = give_way(*p.catheter, state, rail, start, around.pushes, share, h);

@@ -58,7 +58,7 @@ inline void visit(Archive& archive, SupportState& state) {
 struct WireDrive {
     double refused_mm = 0.0;      ///< sum of what was asked for and not taken
     double contact_mn = 0.0;      ///< largest contact force in the last substep
-    double penetration_mm = 0.0;  ///< deepest penetration in the last substep
+    double penetration_mm = 0.0;  ///< deepest penetration in the last substep, before what was too deep was pushed out
     double head_on_mn = 0.0;      ///< force on the front end against its own direction in the last substep
 };
 inline void visit(Archive& archive, WireDrive& drive) {
@@ -82,6 +82,8 @@ struct CatheterRoute {
     double tip_compliance_mm_per_n = 0.0;
     Vec3 yielded = Vec3::Zero();
     CatheterShape driven;
+    /// The last substep left it too deep in the wall: it may only give way.
+    bool stuck = false;
     /// What follows from the route alone, kept while that stays the same.
     std::vector<std::int64_t> rail_route;
     Rail rail;
@@ -91,6 +93,7 @@ inline void visit(Archive& archive, CatheterRoute& route) {
     archive.field("laid", route.laid.points);
     archive.field("lead", route.laid.lead);
     if (route.yielded != Vec3::Zero()) archive.field("yielded", route.yielded);
+    if (route.stuck) archive.field("stuck", route.stuck);
 }
 
 /// Component of the heart: forces between cylinder and wall, kept from substep to substep as a warm start.

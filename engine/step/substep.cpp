@@ -124,8 +124,8 @@ void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<Ch
 }
 
 // How deep the samples that press hard are in the wall as the last pass left it.
-double pressed_depth(Parts& p, const DeviceSamples& samples, StepSums& sums) {
-    if (!p.contacts->presses(samples.list, pressed_mn, front_pressed_mn)) return 0.0;
+TrueDepth pressed_depth(Parts& p, const DeviceSamples& samples, StepSums& sums) {
+    if (!p.contacts->presses(samples.list, pressed_mn, front_pressed_mn)) return {};
     sums.surface_follows = true;
     update(*p.surface, p.wall_state->x, *sums.surface_near, *p.surface_state, p.world->workers());
     return p.contacts->true_depth(*p.surface, *p.surface_state, samples.list, pressed_mn, front_pressed_mn);
@@ -241,6 +241,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
     if (p.catheter && p.catheter_route->tip_compliance_mm_per_n > 0.0) tip = tip_yield(*p.catheter, *p.catheter_route);
     int passes = p.settings->iterations;
     bool looked_again = false, too_deep = false;
+    TrueDepth deepest;
     WallPart touched;  // by devices and heart: passes after the first look at the wall around them alone
     for (int pass = 0; pass < passes; ++pass) {
         p.stage("softbody");
@@ -293,7 +294,8 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
         refresh_samples(p, samples);
         p.contacts->refresh(samples.list, state.x);
         if (pass + 1 < passes) continue;
-        too_deep = pressed_depth(p, samples, sums) > pressed_depth_mm;
+        deepest = pressed_depth(p, samples, sums);
+        too_deep = deepest.mm > pressed_depth_mm;
         if (passes < p.settings->iterations + extra_passes && (too_deep || p.contacts->staleness() > stale_mm)) {
             find_contacts(p, samples, state.x, sums, true);
             looked_again = true;
@@ -322,6 +324,10 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
     }
     p.stage("contact");
     add_report(p, p.contacts->report(state.x), sums);
+    // What the passes did not get out of the wall is not to be driven on.
+    if (p.catheter_route) p.catheter_route->stuck = too_deep && deepest.device == catheter_device;
+    if (p.wire_drive && too_deep && deepest.device == wire_device)
+        p.wire_drive->penetration_mm = std::max(p.wire_drive->penetration_mm, deepest.mm);
     ++sums.substeps;
 }
 
