@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 #include "anatomy/build.h"
 #include "anatomy/implicit_tree.h"
@@ -122,10 +124,30 @@ Index nearest_free_end(const ImportedTree& tree, const Vec3& p) {
     return best;
 }
 
+std::string in_mm(const Vec3& p) {
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(1) << '[' << p.x() << ", " << p.y() << ", " << p.z() << ']';
+    return text.str();
+}
+
+/// Throws UserError where a named point is farther from its place on the centre-line than any hand that points at it
+/// would be: another mesh was meant, another unit or another end.
+void check_near(const ImportedEntry& spec, const CentrelineNode& place, const std::string& what) {
+    constexpr double slack_mm = 20.0, radii = 3.0;
+    const double away = (place.position - spec.near).norm(), most = slack_mm + radii * place.radius;
+    if (away <= most) return;
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(0) << "near = " << in_mm(spec.near) << " of '" << spec.name << "' lies "
+         << away << " mm from the nearest " << what << ", " << in_mm(place.position) << "; allowed are " << most
+         << " mm";
+    throw UserError(spec.where, text.str());
+}
+
 /// A device's mouth stands inset_mm inside the free end nearest to the named point, looking inwards.
 EntrySite make_entry(const ImportedEntry& spec, const ImportedTree& tree,
                      const std::vector<std::vector<Index>>& adjacency) {
     Index previous = nearest_free_end(tree, spec.near);
+    check_near(spec, tree.graph.nodes[static_cast<std::size_t>(previous)], "open end");
     Index at = previous;
     double walked = 0.0;
     const auto& nodes = tree.graph.nodes;
@@ -152,6 +174,7 @@ void name_places(const ImportedAnatomySpec& spec, const ImportedTree& tree, Anat
     for (const ImportedEntry& l : spec.landmarks) {
         const Index n = tree.graph.nearest(l.near);
         const CentrelineNode& node = tree.graph.nodes[static_cast<std::size_t>(n)];
+        check_near(l, node, "place of the centre-line");
         model.landmarks.push_back(
             {l.name, looking_along(node.position, inward(tree.graph, adjacency, n)), node.radius, n});
     }

@@ -142,6 +142,8 @@ WallAround wall_around(const Parts& p, const CatheterShape& now) {
 // Near the wall no sample may run further than this in a substep: rows hold the wall's place and direction as they were
 // when it began, and a tip that rushes along a dented wall would leave both behind.
 constexpr double run_a_substep_mm = 0.2;
+// ... and where the last substep found it deep in a wall that folds round it, no further than this.
+constexpr double run_when_deep_mm = 0.05;
 constexpr double swung_wire_mn = 50.0;
 
 // A wire that sticks out and touches the wall is swung by the catheter: then it, too, is at the wall.
@@ -160,9 +162,9 @@ double largest_shift(const CatheterShape& from, const CatheterShape& to) {
 }
 
 double pace_at_the_wall(const CatheterSpec& spec, const CatheterState& state, const CatheterCommand& command,
-                        const Rail& rail, const CatheterShape& start, double h, double limit_mm) {
+                        const Rail& rail, const CatheterShape& start, double h, double limit_mm, double most_mm) {
     const double run = largest_shift(start, shape(spec, attempt(spec, state, command, 1.0, h, limit_mm), rail));
-    return run > run_a_substep_mm ? run_a_substep_mm / run : 1.0;
+    return run > most_mm ? most_mm / run : 1.0;
 }
 
 // The shaft goes over to where route and wire want it, as fast as contact can follow, and only as far as the wall lets
@@ -176,7 +178,8 @@ void lay_shaft(Parts& p) {
     const auto lie = [&](const Rail& rail) { return shape(*p.catheter, *p.catheter_state, rail); };
     for (WallLimit& limit : around.limits) limit.force_limit *= yielding_from;
     const double shift = largest_shift(route.shape, lie(wanted));
-    const double most = at_the_wall(p, around) ? shift_at_wall_mm : shift_free_mm;
+    const double at_wall = route.deep ? run_when_deep_mm : shift_at_wall_mm;
+    const double most = at_the_wall(p, around) ? at_wall : shift_free_mm;
     double share = shift > most ? most / shift : 1.0;
     if (!around.limits.empty())
         share *= allowed_fraction(route.shape.points, lie(blend(route.laid, wanted, share)).points, around.limits);
@@ -274,8 +277,9 @@ double move_catheter(Parts& p, const Input& input, const SegmentBends& bends, do
         for (WallLimit& l : limits) l.force = 0.0;
         held = true;
     }
+    const double most_mm = route.deep ? run_when_deep_mm : run_a_substep_mm;
     const double pace =
-        at_the_wall(p, around) ? pace_at_the_wall(*p.catheter, state, command, rail, start, h, limit) : 1.0;
+        at_the_wall(p, around) ? pace_at_the_wall(*p.catheter, state, command, rail, start, h, limit, most_mm) : 1.0;
     command.advance_mm *= pace;
     command.rotate_rad *= pace;
     CatheterTaken taken = take(*p.catheter, state, command, rail, limits, pace * h, limit);

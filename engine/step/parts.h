@@ -82,8 +82,9 @@ struct CatheterRoute {
     double tip_compliance_mm_per_n = 0.0;
     Vec3 yielded = Vec3::Zero();
     CatheterShape driven;
-    /// The last substep left it too deep in the wall: it may only give way.
-    bool stuck = false;
+    /// In the last substep it was too deep in the wall at first: it goes slowly; and still in the end: it may only give
+    /// way.
+    bool deep = false, stuck = false;
     /// What follows from the route alone, kept while that stays the same.
     std::vector<std::int64_t> rail_route;
     Rail rail;
@@ -93,6 +94,7 @@ inline void visit(Archive& archive, CatheterRoute& route) {
     archive.field("laid", route.laid.points);
     archive.field("lead", route.laid.lead);
     if (route.yielded != Vec3::Zero()) archive.field("yielded", route.yielded);
+    if (route.deep) archive.field("deep", route.deep);
     if (route.stuck) archive.field("stuck", route.stuck);
 }
 

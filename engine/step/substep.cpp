@@ -40,6 +40,8 @@ constexpr double pressed_mn = 100.0;
 constexpr double front_pressed_mn = 2.0;
 constexpr double pressed_depth_mm = 0.25;
 constexpr int extra_passes = 8;
+// After so many of them a catheter that is still too deep goes back to where it stood, and the rest is for that.
+constexpr int passes_to_go_back = 3;
 // What is deeper than that after the last of them is taken out to so much.
 constexpr double pushed_out_mm = 0.2;
 // Within a step the lumen surface follows the wall up to this far from the devices.
@@ -149,6 +151,31 @@ void find_contacts(Parts& p, DeviceSamples& samples, std::span<const Vec3> parti
                        p.wall_scratch->compliance, p.world->workers(), again);
 }
 
+// Where the catheter stood.
+struct CatheterPlace {
+    CatheterState state;
+    Rail laid;
+    CatheterShape shape, driven;
+};
+
+CatheterPlace place_of(const Parts& p) {
+    return {*p.catheter_state, p.catheter_route->laid, p.catheter_route->shape, p.catheter_route->driven};
+}
+
+// Its motion of this substep undone: the wall could not follow.
+void go_back(Parts& p, const CatheterPlace& place, DeviceSamples& samples, std::optional<TipYield>& tip,
+             StepSums& sums) {
+    *p.catheter_state = place.state;
+    p.catheter_route->laid = place.laid;
+    p.catheter_route->shape = place.shape;
+    p.catheter_route->driven = place.driven;
+    if (tip) tip->way = tip->start;
+    samples.catheter_before = place.shape.points;
+    for (DeviceSample& s : samples.list)
+        if (s.kinematic) s.position = s.previous;
+    sums.catheter_refused = 1.0;
+}
+
 void add_report(const Parts& p, const ContactReport& report, StepSums& sums) {
     for (const DeviceContact& d : report.devices) {
         if (d.device == wire_device) {
@@ -210,15 +237,15 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
 
     // 1. Commands and supports: what moves by itself.
     p.stage("catheter");
-    CatheterShape catheter_before;
+    CatheterPlace catheter_before;
     if (p.catheter) {
-        catheter_before = p.catheter_route->shape;
+        catheter_before = place_of(p);
         sums.catheter_refused = std::max(sums.catheter_refused, move_catheter(p, input, bends, h));
     }
     p.stage("rod");
     if (p.wire) command_wire(p, input, h, sums);
     DeviceSamples samples;
-    begin_samples(p, catheter_before, samples);
+    begin_samples(p, catheter_before.shape, samples);
     if (p.wire) p.wire->predict(h, wire_weight(*p.wire, p.settings->gravity_mm_s2));
 
     p.stage("effects");
@@ -240,7 +267,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
     std::optional<TipYield> tip;
     if (p.catheter && p.catheter_route->tip_compliance_mm_per_n > 0.0) tip = tip_yield(*p.catheter, *p.catheter_route);
     int passes = p.settings->iterations;
-    bool looked_again = false, too_deep = false;
+    bool looked_again = false, too_deep = false, catheter_deep = false, went_back = false;
     TrueDepth deepest;
     WallPart touched;  // by devices and heart: passes after the first look at the wall around them alone
     for (int pass = 0; pass < passes; ++pass) {
@@ -296,7 +323,13 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
         if (pass + 1 < passes) continue;
         deepest = pressed_depth(p, samples, sums);
         too_deep = deepest.mm > pressed_depth_mm;
+        catheter_deep = catheter_deep || (too_deep && deepest.device == catheter_device);
         if (passes < p.settings->iterations + extra_passes && (too_deep || p.contacts->staleness() > stale_mm)) {
+            if (too_deep && deepest.device == catheter_device && !went_back &&
+                passes >= p.settings->iterations + passes_to_go_back) {
+                go_back(p, catheter_before, samples, tip, sums);
+                went_back = true;
+            }
             find_contacts(p, samples, state.x, sums, true);
             looked_again = true;
             ++passes;
@@ -325,7 +358,10 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
     p.stage("contact");
     add_report(p, p.contacts->report(state.x), sums);
     // What the passes did not get out of the wall is not to be driven on.
-    if (p.catheter_route) p.catheter_route->stuck = too_deep && deepest.device == catheter_device;
+    if (p.catheter_route) {
+        p.catheter_route->deep = catheter_deep;
+        p.catheter_route->stuck = too_deep && deepest.device == catheter_device;
+    }
     if (p.wire_drive && too_deep && deepest.device == wire_device)
         p.wire_drive->penetration_mm = std::max(p.wire_drive->penetration_mm, deepest.mm);
     ++sums.substeps;

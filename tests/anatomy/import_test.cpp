@@ -95,6 +95,36 @@ TEST_F(Import, AForkIsFoundWithItsThreeEnds) {
     for (const CentrelineNode& n : m.centreline.nodes) EXPECT_GT(n.radius, 1.0);
 }
 
+TEST_F(Import, AnEntryOrALandmarkFarFromTheVesselsIsRefused) {
+    const TriMesh mesh = build_anatomy(test::straight_tube(5.0, 80.0)).lumen;
+    ImportedAnatomySpec spec;
+    spec.mesh = write("tube.obj", obj(mesh, 1.0));
+    ImportedEntry entry;
+    entry.name = "groin";
+    entry.near = Vec3(0.0, 300.0, 0.0);
+    entry.where = {"scene.toml", 7, "anatomy.entry.near"};
+    spec.entries.push_back(entry);
+    const auto refusal = [&] {
+        try {
+            import_anatomy(spec);
+        } catch (const UserError& e) {
+            return std::string(e.what());
+        }
+        return std::string("no error");
+    };
+    const std::string far_entry = refusal();
+    EXPECT_TRUE(has(far_entry, "scene.toml:7")) << far_entry;
+    EXPECT_TRUE(has(far_entry, "of 'groin' lies 29")) << far_entry;
+    EXPECT_TRUE(has(far_entry, "from the nearest open end")) << far_entry;
+    spec.entries[0].near = Vec3(0.0, 0.0, 40.0);  // half way along: which end is meant?
+    EXPECT_TRUE(has(refusal(), "open end"));
+    spec.landmarks.push_back(entry);
+    spec.entries[0].near = Vec3(0.0, 6.0, -4.0);
+    EXPECT_TRUE(has(refusal(), "place of the centre-line"));
+    spec.landmarks[0].near = Vec3(0.0, 5.0, 40.0);
+    EXPECT_EQ(import_anatomy(spec).entries.size(), 1U);
+}
+
 TEST_F(Import, CornersOfItsOwnInEveryTriangleAreWelded) {
     const TriMesh mesh = build_anatomy(test::straight_tube(5.0, 40.0)).lumen;
     const TriMesh read = load_mesh(write("tube.stl", stl(mesh)), "cm", {});
