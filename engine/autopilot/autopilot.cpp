@@ -16,20 +16,22 @@ namespace cathlab {
 
 namespace {
 
-constexpr double patience_s = 1.5;                  // of pushing without getting on
-constexpr double progress_mm = 2.0;                 // less is not getting on
-constexpr double draw_back_mm = 20.0;               // when stuck
-constexpr double fork_mm = 25.0;                    // drawn back behind where it went astray
-constexpr double turn_speed_deg_s = 90.0;           // while it draws back: no two attempts come from one side
-constexpr double tremor_s = 0.1;                    // the hand's noise stays so long
-constexpr double look_every_s = 0.1;                // between two looks at the bends
-constexpr double least_share = 0.15;                // of the speed, beside the goal
-constexpr double hold_share = 0.3;                  // of the goal's radius: nearer is good enough to stand still
-constexpr double leave_share = 0.6;                 // having stood still, it moves again beyond this
-constexpr double in_vain_s = 3.0;                   // standing longer than the hold takes: the goal swings away
-constexpr double closer = 0.7;                      // then it has to be so much nearer
-constexpr double reach_mm = 25.0;                   // from here on the catheter aims at the goal itself
-constexpr double travelling = 0.05, aiming = 20.0;  // weights of the tip's goal (steering.h)
+constexpr double patience_s = 1.5;                   // of pushing without getting on
+constexpr double progress_mm = 2.0;                  // less is not getting on
+constexpr double draw_back_mm = 20.0;                // when stuck
+constexpr double fork_mm = 25.0;                     // drawn back behind where it went astray
+constexpr double turn_speed_deg_s = 90.0;            // while it draws back: no two attempts come from one side
+constexpr double tremor_s = 0.1;                     // the hand's noise stays so long
+constexpr double look_every_s = 0.1;                 // between two looks at the bends
+constexpr double least_share = 0.15;                 // of the speed, beside the goal
+constexpr double hold_share = 0.3;                   // of the goal's radius: nearer is good enough to stand still
+constexpr double leave_share = 0.6;                  // having stood still, it moves again beyond this
+constexpr double in_vain_s = 3.0;                    // standing longer than the hold takes: the goal swings away
+constexpr double closer = 0.7;                       // then it has to be so much nearer
+constexpr double overshot_mm = 30.0;                 // astray so near the goal, it came too fast
+constexpr double slower_each = 0.75, slowest = 0.2;  // and comes so much slower the next time
+constexpr double reach_mm = 25.0;                    // from here on the catheter aims at the goal itself
+constexpr double travelling = 0.05, aiming = 20.0;   // weights of the tip's goal (steering.h)
 constexpr double most_table_mm = 1000.0;
 constexpr double beats_s = 1.0;  // the goal swings with the heart; the hand aims at its middle
 
@@ -90,7 +92,11 @@ void Autopilot::drive(const Vec3& tip, const Vec3& goal, double bar, Input& inpu
     const Way::Place place = way_.locate(tip);
     const double to_goal = std::sqrt((goal - tip).squaredNorm());
     const double ahead = way_.length_mm() - place.arc_mm;
-    const double calm = std::clamp(to_goal / skill_.near_mm, least_share, 1.0);
+    const bool beyond = ahead < hold_share * task_.radius_mm && task_.device == "wire";
+    const bool overshot = task_.device == "wire" && to_goal < overshot_mm && (beyond || place.astray);
+    if (overshot && !overshot_) slower_ = std::max(slowest, slower_each * slower_);
+    overshot_ = overshot;
+    const double calm = std::clamp(slower_ * to_goal / skill_.near_mm, slower_ * least_share, 1.0);
     if (back_mm_ > 0.0) {  // drawing back, and turning to come another way
         input.advance = -noisy(skill_.speed_mm_s, 0);
         input.rotate = noisy(turn_speed_deg_s, 1);
@@ -114,7 +120,6 @@ void Autopilot::drive(const Vec3& tip, const Vec3& goal, double bar, Input& inpu
         farthest_mm_ = place.arc_mm;
         stuck_s_ = 0.0;
     }
-    const bool beyond = ahead < hold_share * task_.radius_mm && task_.device == "wire";
     if (beyond) {  // past the goal, or beside it at its height
         input.advance = -noisy(calm * skill_.speed_mm_s, 0);
         return;
@@ -122,7 +127,7 @@ void Autopilot::drive(const Vec3& tip, const Vec3& goal, double bar, Input& inpu
     const double ease = std::clamp((skill_.caution - bar) / (skill_.caution - skill_.easy), 0.0, 1.0);
     input.advance = noisy(calm * ease * skill_.speed_mm_s, 0);
     stuck_s_ += dt_;
-    if (stuck_s_ > patience_s / std::max(least_share, calm * ease)) {
+    if (stuck_s_ > patience_s / std::max(slower_ * least_share, calm * ease)) {
         back_mm_ = draw_back_mm * (1.0 + attempts_++ % 3);
         stuck_s_ = 0.0;
     }

@@ -51,6 +51,8 @@ private:
     int attempts_ = 0;
     bool arrived_ = false, near_ = false;
     double stood_s_ = 0.0, near_enough_ = 1.0;
+    bool overshot_ = false;
+    double slower_ = 1.0;  // of its speed beside the goal, after each time that it ran past
     Vec2 proximal_ = Vec2::Zero(), distal_ = Vec2::Zero();
 };
 

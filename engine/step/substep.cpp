@@ -323,10 +323,11 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
         if (pass + 1 < passes) continue;
         deepest = pressed_depth(p, samples, sums);
         too_deep = deepest.mm > pressed_depth_mm;
-        catheter_deep = catheter_deep || (too_deep && deepest.device == catheter_device);
+        // The wire in it goes where the catheter takes it.
+        const bool by_catheter = p.catheter && too_deep && (deepest.device == catheter_device || wire_inside(p));
+        catheter_deep = catheter_deep || by_catheter;
         if (passes < p.settings->iterations + extra_passes && (too_deep || p.contacts->staleness() > stale_mm)) {
-            if (too_deep && deepest.device == catheter_device && !went_back &&
-                passes >= p.settings->iterations + passes_to_go_back) {
+            if (by_catheter && !went_back && passes >= p.settings->iterations + passes_to_go_back) {
                 go_back(p, catheter_before, samples, tip, sums);
                 went_back = true;
             }
@@ -360,7 +361,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
     // What the passes did not get out of the wall is not to be driven on.
     if (p.catheter_route) {
         p.catheter_route->deep = catheter_deep;
-        p.catheter_route->stuck = too_deep && deepest.device == catheter_device;
+        p.catheter_route->stuck = too_deep && catheter_deep;
     }
     if (p.wire_drive && too_deep && deepest.device == wire_device)
         p.wire_drive->penetration_mm = std::max(p.wire_drive->penetration_mm, deepest.mm);
