@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,7 @@ class Import : public testing::Test {
 protected:
     void SetUp() override {
         const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::path(testing::TempDir()) / ("cathlab-" + std::string(info->name()));
+        folder_ = fs::path(testing::TempDir()) / ("cathlab-" + std::to_string(getpid()) + std::string(info->name()));
         fs::remove_all(folder_);
         fs::create_directories(folder_);
     }

@@ -1,6 +1,7 @@
 #include "imaging/coco_writer.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -47,7 +48,7 @@ TEST(CocoMask, IsPackedAsCocosOwnToolsDo) {
 }
 
 TEST(CocoWriter, AFileIsWholeOrNotThere) {
-    const fs::path path = fs::temp_directory_path() / "cathlab_labels_test.json";
+    const fs::path path = fs::temp_directory_path() / ("cathlab_labels_test_" + std::to_string(getpid()) + ".json");
     fs::remove(path);
     {
         CocoWriter given_up(path.string(), "x", {{"wire", "device"}}, {});

@@ -1,6 +1,7 @@
 #include "imaging/image.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -18,7 +19,7 @@ Image8 ramp(int width, int height) {
 }
 
 TEST(Png, APictureComesBackByteForByte) {
-    const fs::path path = fs::temp_directory_path() / "cathlab_image_test.png";
+    const fs::path path = fs::temp_directory_path() / ("cathlab_image_test_" + std::to_string(getpid()) + ".png");
     const Image8 image = ramp(37, 21);
     write_png(path.string(), image);
     const Image8 back = read_png(path.string());

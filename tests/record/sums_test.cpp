@@ -2,6 +2,7 @@
 #include "record/sums.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -26,8 +27,8 @@ protected:
     void write(const std::string& name, const std::string& text) {
         std::ofstream(folder_ + "/" + name, std::ios::binary) << text;
     }
-    std::string folder_ =
-        testing::TempDir() + "cathlab_sums_" + testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::string folder_ = testing::TempDir() + "cathlab_sums_" + std::to_string(getpid()) +
+                          testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
 TEST_F(Sums, AWholeFolderIsWhole) {

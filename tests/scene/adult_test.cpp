@@ -1,5 +1,6 @@
 // The default adult as its file describes it.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -197,7 +198,9 @@ TEST(Adult, TheSolidsOfTheTorsoNestAndDoNotMeet) {
 }
 
 TEST(AnatomyFile, FaultsAreNamedWithTheirLine) {
-    const std::string path = (std::filesystem::path(testing::TempDir()) / "cathlab-anatomy-fault.toml").string();
+    const std::string path =
+        (std::filesystem::path(testing::TempDir()) / ("cathlab-anatomy-fault-" + std::to_string(getpid()) + ".toml"))
+            .string();
     auto error = [&](const std::string& text) -> std::string {
         std::ofstream(path) << text;
         try {

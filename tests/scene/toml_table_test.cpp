@@ -1,6 +1,7 @@
 #include "scene/toml_table.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -135,7 +136,8 @@ TEST(TomlDocument, AnOverlayMergesTablesAndReplacesLists) {
 }
 
 TEST(TomlDocument, MissingFolderBinaryAndHugeFilesAreRefused) {
-    const auto folder = std::filesystem::temp_directory_path() / "cathlab_toml_document_test";
+    const auto folder =
+        std::filesystem::temp_directory_path() / ("cathlab_toml_document_test_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder);
     EXPECT_THROW(load_toml((folder / "missing.toml").string()), UserError);
     EXPECT_THROW(load_toml(folder.string()), UserError);

@@ -2,6 +2,7 @@
 #include "study/protocol.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -30,8 +31,8 @@ protected:
     }
     void write(const std::string& name, const std::string& text) { std::ofstream(folder_ + "/" + name) << text; }
 
-    std::string folder_ =
-        testing::TempDir() + "cathlab_study_" + testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::string folder_ = testing::TempDir() + "cathlab_study_" + std::to_string(getpid()) +
+                          testing::UnitTest::GetInstance()->current_test_info()->name();
     Protocol protocol_{"trial", {"expert", "novice"}, {"a", "b", "c", "d"}, 2};
 };
 

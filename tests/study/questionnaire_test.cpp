@@ -2,7 +2,9 @@
 #include "study/questionnaire.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "core/errors.h"
@@ -18,11 +20,18 @@ Answers all(int likert, int sus, int tlx) {
     return out;
 }
 
-std::string file(const std::string& text) {
-    const std::string path = testing::TempDir() + "questionnaire.json";
-    std::ofstream(path) << text;
-    return path;
-}
+/// A file for as long as the expression that it stands in.
+class File {
+public:
+    explicit File(const std::string& text) { std::ofstream(path_) << text; }
+    ~File() { std::filesystem::remove(path_); }
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+    operator const std::string&() const { return path_; }
+
+private:
+    std::string path_ = testing::TempDir() + "questionnaire-" + std::to_string(getpid()) + ".json";
+};
 
 TEST(Questionnaire, HoldsElevenStatementsTenOfTheUsabilityScaleAndSixOfTheTaskLoad) {
     const auto sheets = question_sheets();
@@ -49,14 +58,14 @@ TEST(Questionnaire, AHalfFilledOneHasNoScoreAndIsReadAgainAsItWas) {
     EXPECT_FALSE(half.complete());
     EXPECT_FALSE(sus_score(half));
     EXPECT_FALSE(tlx_score(half));
-    const Answers read = read_questionnaire(file(questionnaire_json(half)));
+    const Answers read = read_questionnaire(File(questionnaire_json(half)));
     EXPECT_EQ(read.sheets, half.sheets);
     EXPECT_EQ(read.given(), 3U);
     const Answers whole = all(2, 4, 100);
-    EXPECT_EQ(read_questionnaire(file(questionnaire_json(whole))).sheets, whole.sheets);
+    EXPECT_EQ(read_questionnaire(File(questionnaire_json(whole))).sheets, whole.sheets);
     Answers none;
     none.skipped = true;
-    EXPECT_TRUE(read_questionnaire(file(questionnaire_json(none))).skipped);
+    EXPECT_TRUE(read_questionnaire(File(questionnaire_json(none))).skipped);
 }
 
 TEST(Questionnaire, WhatIsNoAnswerIsASentenceWithFileAndKey) {
@@ -64,7 +73,7 @@ TEST(Questionnaire, WhatIsNoAnswerIsASentenceWithFileAndKey) {
         std::string text = questionnaire_json(all(3, 3, 50));
         text.replace(text.find(from), from.size(), to);
         try {
-            read_questionnaire(file(text));
+            read_questionnaire(File(text));
         } catch (const UserError& error) {
             return std::string(error.what());
         }
@@ -76,7 +85,7 @@ TEST(Questionnaire, WhatIsNoAnswerIsASentenceWithFileAndKey) {
     EXPECT_NE(sentence("\"mental\"", "\"metal\"").find("tlx.metal"), std::string::npos);
     EXPECT_NE(sentence("\"schema\": 1", "\"schema\": 2").find("version"), std::string::npos);
     EXPECT_THROW(read_questionnaire(testing::TempDir() + "nothing.json"), UserError);
-    EXPECT_THROW(read_questionnaire(file("{")), UserError);
+    EXPECT_THROW(read_questionnaire(File("{")), UserError);
 }
 
 }  // namespace
