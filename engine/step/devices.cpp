@@ -15,6 +15,8 @@ namespace {
 // substep.
 constexpr double head_on_mn = 10.0;
 constexpr double head_on_advance_mm = 0.06;
+// How fast a wire slips through rollers that hold it against twice what they can.
+constexpr double slip_mm_s = 40.0;
 // Rows at most for a sample of the front end, round which the wall folds like a tent.
 constexpr int walls_of_a_tip = 4;
 // The front of the wire, and of the catheter's shaft behind its segments, is sampled in full; behind it every other
@@ -78,6 +80,12 @@ double drive_fraction(const Rod& wire, const WireDrive& drive, const StepSetting
 double sleeve_drive_fraction(const Rod& wire, const WireDrive& drive, const StepSettings& settings, double advance_mm) {
     return fraction_below(wire.sleeve_spec().max_push_n * units::newton, wire.sleeve_force_mn(), drive, settings,
                           advance_mm);
+}
+
+double drive_slip(const Rod& wire, double h) {
+    const double limit = wire.spec().max_push_n * units::newton, force = wire.sheath_force_mn();
+    const double excess = std::clamp(std::fabs(force) / limit - 1.0, 0.0, 1.0);
+    return std::copysign(excess * slip_mm_s * h, -force);
 }
 
 void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceSamples& samples) {

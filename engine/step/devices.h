@@ -27,6 +27,10 @@ double drive_fraction(const Rod& wire, const WireDrive& drive, const StepSetting
 /// The same for the drive of a passive catheter over the wire.
 double sleeve_drive_fraction(const Rod& wire, const WireDrive& drive, const StepSettings& settings, double advance_mm);
 
+/// How far (mm) the wire slips through its drive within h seconds where what it is held against exceeds max_push_n: a
+/// catheter around it may push or pull it harder than its own drive would.  Negative = out of the patient.
+double drive_slip(const Rod& wire, double h);
+
 /// Lists the samples as they are before the prediction (position = previous).
 void begin_samples(const Parts& parts, const CatheterShape& catheter_before, DeviceSamples& samples);
 

@@ -52,7 +52,8 @@ void command_wire(Parts& p, const Input& input, double h, StepSums& sums) {
     const bool selected = input.device < 0.5;
     const double wanted = selected ? input.advance * h : 0.0;
     const double fraction = wanted == 0.0 ? 1.0 : drive_fraction(*p.wire, *p.wire_drive, *p.settings, wanted);
-    const double taken = p.wire->command(fraction * wanted, selected ? input.rotate * units::deg * h : 0.0);
+    const double slip = p.wire->has_sleeve() ? 0.0 : drive_slip(*p.wire, h);
+    const double taken = p.wire->command(fraction * wanted + slip, selected ? input.rotate * units::deg * h : 0.0);
     sums.wire_refused_mm += wanted - taken;
     p.wire_drive->refused_mm += std::fabs(wanted - taken);
     if (!p.wire->has_sleeve()) return;
