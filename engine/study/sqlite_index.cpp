@@ -165,11 +165,20 @@ RunIndex::Rebuilt RunIndex::rebuild() {
     std::vector<std::string> folders;
     fs::recursive_directory_iterator walk(database_->root, fs::directory_options::skip_permission_denied, fault);
     if (fault) throw UserError(database_->root + ": cannot be read: " + fault.message());
-    for (const auto& entry : walk)
-        if (entry.path().filename() == "manifest.json")
-            folders.push_back(entry.path().parent_path().lexically_relative(database_->root).generic_string());
-    std::sort(folders.begin(), folders.end());
     Rebuilt out;
+    for (; walk != fs::recursive_directory_iterator(); walk.increment(fault)) {
+        if (fault) throw UserError(database_->root + ": cannot be read: " + fault.message());
+        const fs::path& path = walk->path();
+        if (path.extension() == ".part" && walk->is_directory()) {
+            walk.disable_recursion_pending();
+            out.left_out.push_back(path.lexically_relative(database_->root).generic_string() +
+                                   ": a trial that was broken off; it is to be run again");
+        } else if (path.filename() == "manifest.json") {
+            folders.push_back(path.parent_path().lexically_relative(database_->root).generic_string());
+        }
+    }
+    std::sort(folders.begin(), folders.end());
+    std::sort(out.left_out.begin(), out.left_out.end());
     database_->transaction([&] {
         database_->execute("DELETE FROM run");
         for (const std::string& folder : folders) {
