@@ -81,7 +81,8 @@ void for_triangles_of(const SurfaceTree& tree, const SurfaceTree::Node& leaf, co
                       const Bound& bound, const Visit& visit) {
     // Above what rounding makes of a box's distance or of a triangle's.
     constexpr double slack_mm2 = 1e-9;
-    for (auto i = static_cast<std::size_t>(leaf.first); i < static_cast<std::size_t>(leaf.first + leaf.count); ++i)
+    const auto first = static_cast<std::size_t>(leaf.first), end = first + static_cast<std::size_t>(leaf.count);
+    for (std::size_t i = first; i < end; ++i)
         if (boxes.place[i].squared_distance(p) <= bound() + slack_mm2) visit(tree.order[i]);
 }
 

@@ -14,6 +14,8 @@ namespace {
 
 // From this share of its force limit on the catheter gives way, at the limit at full speed.
 constexpr double yielding_from = 0.75;
+// ... and with this share of its speeds where it is stuck deep in the wall, whatever the force there.
+constexpr double stuck_share = 0.1;
 // A shaft that was laid over a wire yields sideways, to the vessel's middle, from this share on.
 constexpr double sideways_from = 0.4;
 // How far a command may drive the catheter into the wall in one substep, beyond what the wall has yielded: the wall is
@@ -266,13 +268,15 @@ double move_catheter(Parts& p, const Input& input, const SegmentBends& bends, do
     WallAround around = wall_around(p, start);
     std::vector<WallLimit>& limits = around.limits;
     bool held = (route.stuck || (p.wire && wire_presses(*p.wire_drive, *p.settings))) && hold_back(command, state);
-    if (around.load > yielding_from) {
-        const double share = std::min(1.0, (around.load - yielding_from) / (1.0 - yielding_from));
+    if (around.load > yielding_from || route.stuck) {
+        const double least = route.stuck ? stuck_share : 0.0;
+        const double share = std::clamp((around.load - yielding_from) / (1.0 - yielding_from), least, 1.0);
         const CatheterCommand yielding = give_way(*p.catheter, state, rail, start, around.pushes, share, h);
         // What is left of the operator's push; bends are targets and yield as a whole.
         const double own = command.advance_mm > 0.0 ? (1.0 - share) * command.advance_mm : command.advance_mm;
         command = yielding;
         command.advance_mm += own;
+        if (route.stuck) command.advance_mm = std::min(command.advance_mm, -run_when_deep_mm);
         // On its way out of the load depth alone is left to limit.
         for (WallLimit& l : limits) l.force = 0.0;
         held = true;

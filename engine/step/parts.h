@@ -82,8 +82,8 @@ struct CatheterRoute {
     double tip_compliance_mm_per_n = 0.0;
     Vec3 yielded = Vec3::Zero();
     CatheterShape driven;
-    /// In the last substep it was too deep in the wall at first: it goes slowly; and still in the end: it may only give
-    /// way.
+    /// In the last substep it was too deep in the wall at first: it goes slowly; and still in the end: it draws
+    /// back.
     bool deep = false, stuck = false;
     /// What follows from the route alone, kept while that stays the same.
     std::vector<std::int64_t> rail_route;

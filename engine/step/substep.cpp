@@ -239,6 +239,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
     // 1. Commands and supports: what moves by itself.
     p.stage("catheter");
     CatheterPlace catheter_before;
+    const bool gives_way = p.catheter && p.catheter_route->stuck;  // that is not undone
     if (p.catheter) {
         catheter_before = place_of(p);
         sums.catheter_refused = std::max(sums.catheter_refused, move_catheter(p, input, bends, h));
@@ -328,7 +329,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
         const bool by_catheter = p.catheter && too_deep && (deepest.device == catheter_device || wire_inside(p));
         catheter_deep = catheter_deep || by_catheter;
         if (passes < p.settings->iterations + extra_passes && (too_deep || p.contacts->staleness() > stale_mm)) {
-            if (by_catheter && !went_back && passes >= p.settings->iterations + passes_to_go_back) {
+            if (by_catheter && !went_back && !gives_way && passes >= p.settings->iterations + passes_to_go_back) {
                 go_back(p, catheter_before, samples, tip, sums);
                 went_back = true;
             }
