@@ -363,7 +363,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
     // What the passes did not get out of the wall is not to be driven on.
     if (p.catheter_route) {
         p.catheter_route->deep = catheter_deep;
-        p.catheter_route->stuck = too_deep && catheter_deep;
+        p.catheter_route->stuck = too_deep && deepest.device == catheter_device;
     }
     if (p.wire_drive && too_deep && deepest.device == wire_device)
         p.wire_drive->penetration_mm = std::max(p.wire_drive->penetration_mm, deepest.mm);
