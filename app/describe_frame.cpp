@@ -181,12 +181,22 @@ void describe_beam(const World& world, const SceneSpec& scene, const Channels& c
     frame.view.width_mm = beam.c_arm.field_mm;
     frame.view.height_mm = beam.c_arm.field_mm;
     frame.view.source_isocentre_mm = beam.c_arm.sod_mm;
+    const bool stepped = in_world != nullptr;  // else the channels say nothing about a beam
+    frame.view.open_width = change.open_width.value_or(stepped ? channels.collimator_width : 1.0);
+    frame.view.open_height = change.open_height.value_or(stepped ? channels.collimator_height : 1.0);
+    frame.series.number = static_cast<std::uint64_t>(channels.exposure_series);
+    frame.series.subtracted = channels.acquisition >= 1.5;
+    frame.series.collected = channels.acquisition >= 0.5;
+    frame.series.roadmap = channels.roadmap > 0.5;
+    frame.series.references = static_cast<std::uint64_t>(channels.references);
     frame.exposure.detector = detector_preset(change.detector.empty() ? scene.c_arm.detector : change.detector);
     frame.exposure.copper_mm = beam.copper_mm;
     if (channels.tube_voltage_kvp > 0.0) frame.exposure.kvp = channels.tube_voltage_kvp;
     if (change.kvp) frame.exposure.kvp = *change.kvp;
     // Another view has another thickness, for which the control would have reached its target.
-    frame.exposure.detector_kerma_ngy = beam.target_kerma_ngy;
+    frame.exposure.detector_kerma_ngy = channels.acquisition >= 1.5   ? beam.dsa_kerma_ngy
+                                        : channels.acquisition >= 0.5 ? beam.cine_kerma_ngy
+                                                                      : beam.target_kerma_ngy;
     if (channels.detector_kerma_ngy > 0.0 && !change.moves())
         frame.exposure.detector_kerma_ngy = channels.detector_kerma_ngy;
     if (change.kerma_ngy) frame.exposure.detector_kerma_ngy = *change.kerma_ngy;
@@ -205,6 +215,7 @@ void describe_frame(World& world, const SceneSpec& scene, const Channels& channe
     if (parts.wire) frame.devices.push_back(describe_wire(*parts.wire, parts.world->first<GuidePath>()));
     describe_camera(parts, frame);
     frame.show_inner_view = frame.inner_camera.has_value() && !change.alone;
+    frame.show_reference = channels.references > 0.5 && !change.alone;
     describe_outer_camera(change, frame);
     describe_beam(world, scene, channels, change, frame);
     frame.wall_force_limit_n = channels.force_limit_n > 0.0 ? channels.force_limit_n : 0.8;

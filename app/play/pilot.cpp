@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/script.h"
+
 namespace cathlab::play {
 namespace {
 
@@ -23,8 +25,7 @@ Pilot::Pilot(const SceneSpec& scene, const Vec3& isocentre)
       middle_(isocentre),
       field_mm_(scene.c_arm.field_of_view_mm / magnification) {
     device_ = has_wire_ ? 0 : 1;
-    input_.primary_angle = scene.c_arm.primary_deg;
-    input_.secondary_angle = scene.c_arm.secondary_deg;
+    input_ = base_input(scene);
     input_.device = device_;
 }
 
