@@ -112,7 +112,7 @@ TEST_F(Trainer, TheConsoleIsRecordedSoThatAReplayHasTheSameDoseAndPictures) {
     app = std::make_unique<PlayApp>(again, context);
     for (int i = 0; i < 400 && (app->simulation() == nullptr || !status().over); ++i) frames(1);
     EXPECT_EQ(status().channels.air_kerma_mgy, played.air_kerma_mgy);
-    EXPECT_EQ(status().channels.dose_area_gycm2, played.dose_area_gycm2);
+    EXPECT_EQ(status().channels.dose_area_product_gycm2, played.dose_area_product_gycm2);
     EXPECT_EQ(status().channels.exposures, played.exposures);
     EXPECT_EQ(status().channels.contrast_injected_ml, played.contrast_injected_ml);
     EXPECT_TRUE(app->side() == Side::kept);  // the reference was kept in the replay, too
