@@ -28,6 +28,25 @@ void describe_solids(const AnatomyModel& anatomy, FrameDescription& frame) {
     }
 }
 
+// On the edges of the nearest node the place nearest to p: a front that runs along the vessel then lies straight across
+// it, whatever its triangles.
+FrameMemory::Along along_centreline(const CentrelineGraph& graph, const std::vector<std::vector<Index>>& neighbours,
+                                    const Vec3& p) {
+    const Index node = graph.nearest(p);
+    const Vec3& from = graph.nodes[static_cast<std::size_t>(node)].position;
+    FrameMemory::Along best{node, node, 0.0};
+    double least = (p - from).squaredNorm();
+    for (const Index next : neighbours[static_cast<std::size_t>(node)]) {
+        const Vec3 way = graph.nodes[static_cast<std::size_t>(next)].position - from;
+        const double share = std::clamp((p - from).dot(way) / std::max(1e-12, way.squaredNorm()), 0.0, 1.0);
+        const double off = (p - from - share * way).squaredNorm();
+        if (off >= least) continue;
+        least = off;
+        best = {node, next, share};
+    }
+    return best;
+}
+
 void describe_contrast(const World& world, const AnatomyModel& anatomy, FrameMemory& memory, FrameLumen& lumen) {
     const auto* contrast = world.first<ContrastState>();
     if (contrast == nullptr) return;
@@ -37,16 +56,20 @@ void describe_contrast(const World& world, const AnatomyModel& anatomy, FrameMem
         return;
     }
     const std::vector<Vec3>& vertices = anatomy.lumen.vertices;
-    std::vector<Index>& node = memory.node_of_vertex;
-    if (node.size() != vertices.size()) {
-        node.resize(vertices.size());
-        world.workers().for_ranges(node.size(), 256, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) node[i] = anatomy.centreline.nearest(vertices[i]);
+    if (memory.along.size() != vertices.size()) {
+        const auto neighbours = anatomy.centreline.adjacency();
+        memory.along.resize(vertices.size());
+        world.workers().for_ranges(vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                memory.along[i] = along_centreline(anatomy.centreline, neighbours, vertices[i]);
         });
     }
-    lumen.contrast_mg_ml.resize(node.size());
-    for (std::size_t i = 0; i < node.size(); ++i)
-        lumen.contrast_mg_ml[i] = concentration[static_cast<std::size_t>(node[i])];
+    lumen.contrast_mg_ml.resize(vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const FrameMemory::Along& a = memory.along[i];
+        lumen.contrast_mg_ml[i] = (1.0 - a.share) * concentration[static_cast<std::size_t>(a.from)] +
+                                  a.share * concentration[static_cast<std::size_t>(a.to)];
+    }
 }
 
 void describe_lumen(const Parts& parts, FrameMemory& memory, FrameLumen& lumen) {
@@ -181,12 +204,22 @@ void describe_beam(const World& world, const SceneSpec& scene, const Channels& c
     frame.view.width_mm = beam.c_arm.field_mm;
     frame.view.height_mm = beam.c_arm.field_mm;
     frame.view.source_isocentre_mm = beam.c_arm.sod_mm;
+    const bool stepped = in_world != nullptr;  // else the channels say nothing about a beam
+    frame.view.open_width = change.open_width.value_or(stepped ? channels.collimator_width : 1.0);
+    frame.view.open_height = change.open_height.value_or(stepped ? channels.collimator_height : 1.0);
+    frame.series.number = static_cast<std::uint64_t>(channels.exposure_series);
+    frame.series.subtracted = channels.acquisition >= 1.5;
+    frame.series.collected = channels.acquisition >= 0.5;
+    frame.series.roadmap = channels.roadmap > 0.5;
+    frame.series.references = static_cast<std::uint64_t>(channels.references);
     frame.exposure.detector = detector_preset(change.detector.empty() ? scene.c_arm.detector : change.detector);
     frame.exposure.copper_mm = beam.copper_mm;
     if (channels.tube_voltage_kvp > 0.0) frame.exposure.kvp = channels.tube_voltage_kvp;
     if (change.kvp) frame.exposure.kvp = *change.kvp;
     // Another view has another thickness, for which the control would have reached its target.
-    frame.exposure.detector_kerma_ngy = beam.target_kerma_ngy;
+    frame.exposure.detector_kerma_ngy = channels.acquisition >= 1.5   ? beam.dsa_kerma_ngy
+                                        : channels.acquisition >= 0.5 ? beam.cine_kerma_ngy
+                                                                      : beam.target_kerma_ngy;
     if (channels.detector_kerma_ngy > 0.0 && !change.moves())
         frame.exposure.detector_kerma_ngy = channels.detector_kerma_ngy;
     if (change.kerma_ngy) frame.exposure.detector_kerma_ngy = *change.kerma_ngy;
@@ -205,6 +238,7 @@ void describe_frame(World& world, const SceneSpec& scene, const Channels& channe
     if (parts.wire) frame.devices.push_back(describe_wire(*parts.wire, parts.world->first<GuidePath>()));
     describe_camera(parts, frame);
     frame.show_inner_view = frame.inner_camera.has_value() && !change.alone;
+    frame.show_reference = channels.references > 0.5 && !change.alone;
     describe_outer_camera(change, frame);
     describe_beam(world, scene, channels, change, frame);
     frame.wall_force_limit_n = channels.force_limit_n > 0.0 ? channels.force_limit_n : 0.8;

@@ -13,7 +13,13 @@ namespace cathlab {
 
 /// What is the same in all frames of a run and takes a while to find.
 struct FrameMemory {
-    std::vector<Index> node_of_vertex;  ///< the centre-line node nearest to each vertex of the lumen at rest
+    /// Where each vertex of the lumen at rest stands along the centre-line: between two neighbours, at this share of
+    /// the way from the first.
+    struct Along {
+        Index from = 0, to = 0;
+        double share = 0.0;
+    };
+    std::vector<Along> along;
 };
 
 /// Fills everything but size, seed, frame_index and overlay.  Give the same objects for every frame of a run: meshes

@@ -66,6 +66,7 @@ struct Film::Impl {
     HudData panels;
     MessageLines messages;
     std::unique_ptr<LabelRecorder> labels;
+    double pulse = 0.0, series = 0.0;  // of the last picture that was exposed
     std::size_t count = 0;
 };
 
@@ -90,6 +91,13 @@ void Film::add(World& world, const Channels& channels) {
     frame.frame_index = m.count;
     frame.inner_camera = m.camera;
     describe_frame(world, m.scene, channels, m.options.view, m.memory, frame);
+    // Between two pulses the last picture is held; the pedal's first picture does not wait for a pulse.
+    const double pulse = channels.exposures, series = channels.exposure_series;
+    if (!m.options.view.beam_on && pulse == m.pulse && series == m.series) frame.beam_on = false;
+    if (frame.beam_on) {
+        m.pulse = pulse;
+        m.series = series;
+    }
     film_frame.machine = machine_of(channels, m.options.view);
     m.camera = frame.inner_camera;
     if (m.options.probe) m.options.probe("panels");

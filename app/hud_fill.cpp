@@ -14,6 +14,7 @@ void fill_hud(const SceneSpec& scene, const Channels& c, HudData& out) {
     out.sid_mm = scene.c_arm.sid_mm;
     out.field_mm = scene.c_arm.field_of_view_mm;
     out.beam_on = c.beam_on > 0.5;
+    out.acquisition = c.acquisition >= 1.5 ? "DSA" : c.acquisition >= 0.5 ? "CINE" : c.roadmap >= 0.5 ? "ROADMAP" : "";
     out.kvp = c.tube_voltage_kvp;
     out.pulses_per_s = scene.c_arm.frame_rate;
     out.beam_on_s = c.beam_time_s;

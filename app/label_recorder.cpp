@@ -16,7 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double seen_mg_ml = 5.0;  // of iodine in a vessel before a picture shows its ostium (an assumption)
 constexpr std::size_t vertices_a_landmark = 12;
 
 Json rounded(double v) {
@@ -120,7 +119,7 @@ void LabelRecorder::Impl::find_points(World& world, const FrameDescription& fram
         moved /= static_cast<double>(point.vertices.size());
         const bool filled = contrast != nullptr && point.node >= 0 &&
                             static_cast<std::size_t>(point.node) < contrast->concentration.size() &&
-                            contrast->concentration[static_cast<std::size_t>(point.node)] > seen_mg_ml;
+                            contrast->concentration[static_cast<std::size_t>(point.node)] > source.seen_mg_ml;
         source.points.push_back({point.name, point.rest + moved, filled});
     }
 }
@@ -130,17 +129,33 @@ void LabelRecorder::Impl::label(World& world, const FrameDescription& frame) {
     find_points(world, frame);
     const FrameLabels labels = label_frame(frame, source, at.width, at.height, world.workers());
     annotations.clear();
-    const auto mask = [&](const FrameLabels::Mask& m) {
-        return coco_mask(m.inside, at.width, at.height, at.x, at.y, frame.width, frame.height);
+    const auto mask = [&](const std::vector<std::uint8_t>& pixels) {
+        return coco_mask(pixels, at.width, at.height, at.x, at.y, frame.width, frame.height);
+    };
+    // As COCO's amodal annotations have it [zhu2017]: what is seen of the mask, and the share of it that is not.
+    const auto visible = [&](const FrameLabels::Mask& m, const CocoMask& whole) {
+        const CocoMask seen = mask(m.visible);
+        const double hidden =
+            whole.area > 0 ? 1.0 - static_cast<double>(seen.area) / static_cast<double>(whole.area) : 0.0;
+        return Json({{"visible_mask", {{"size", {frame.height, frame.width}}, {"counts", seen.counts}}},
+                     {"visible_area", seen.area},
+                     {"occlude_rate", rounded(hidden)}});
     };
     for (std::size_t i = 0; i < labels.devices.size(); ++i) {
         Json line_px = Json::array(), line_mm = Json::array();
         for (const Vec2& p : labels.lines[i].pixels) line_px.push_back(place(p, at.x, at.y));
         for (const Vec3& p : labels.lines[i].world) line_mm.push_back(place(p));
-        annotations.push_back({labels.devices[i].name, mask(labels.devices[i]),
-                               Json({{"centreline_px", line_px}, {"centreline_mm", line_mm}}).dump()});
+        CocoMask whole = mask(labels.devices[i].inside);
+        Json facts = visible(labels.devices[i], whole);
+        facts["centreline_px"] = line_px;
+        facts["centreline_mm"] = line_mm;
+        annotations.push_back({labels.devices[i].name, std::move(whole), facts.dump()});
     }
-    for (const FrameLabels::Mask& region : labels.regions) annotations.push_back({region.name, mask(region), ""});
+    for (const FrameLabels::Mask& region : labels.regions) {
+        CocoMask whole = mask(region.inside);
+        Json facts = visible(region, whole);
+        annotations.push_back({region.name, std::move(whole), facts.dump()});
+    }
     key_points.clear();
     Json world_points = Json::array();
     for (const FrameLabels::Point& p : labels.points) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "beam/materials.h"
+#include "beam/view_presets.h"
 #include "commands.h"
 #include "core/channels.h"
 #include "core/errors.h"
@@ -77,6 +78,14 @@ Json list_materials() {
     return out;
 }
 
+Json list_views() {
+    Json out = Json::array();
+    for (const ViewPreset& v : view_presets())
+        out.push_back(
+            {{"name", v.name}, {"primary_deg", v.primary_deg}, {"secondary_deg", v.secondary_deg}, {"shows", v.shows}});
+    return out;
+}
+
 std::string cell(const Json& value) {
     return value.is_string() ? value.get<std::string>() : value.dump();
 }
@@ -124,6 +133,7 @@ void list(const std::string& what, bool json, const AppContext& context) {
     if (what == "effects") rows = list_effects();
     if (what == "channels") rows = list_infos(channel_table());
     if (what == "actions") rows = list_infos(action_table());
+    if (what == "views") rows = list_views();
     if (what == "metrics") rows = list_infos(metric_table());
     if (what == "materials") rows = list_materials();
     if (json)
@@ -142,11 +152,11 @@ void add_list_command(CLI::App& app, AppContext& context) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("list", "Show what there is to choose from");
     command
-        ->add_option(
-            "WHAT", options->what,
-            "scenes, devices, effects, channels, materials, anatomies, actions, metrics, schema or device-schema")
+        ->add_option("WHAT", options->what,
+                     "scenes, devices, effects, channels, materials, anatomies, actions, views, metrics, schema or "
+                     "device-schema")
         ->required()
-        ->check(CLI::IsMember({"scenes", "devices", "effects", "channels", "materials", "anatomies", "actions",
+        ->check(CLI::IsMember({"scenes", "devices", "effects", "channels", "materials", "anatomies", "actions", "views",
                                "metrics", "schema", "device-schema"}));
     command->add_flag("--json", options->json, "As JSON");
     command->callback([options, &context] { list(options->what, options->json, context); });

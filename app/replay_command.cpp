@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "beam/view_presets.h"
 #include "commands.h"
 #include "core/errors.h"
 #include "film.h"
@@ -106,6 +107,21 @@ void add_render_command(CLI::App& app, AppContext& context) {
     command->add_option("--primary", view.primary_deg, "deg, positive = LAO; else as in the run")
         ->check(CLI::Range(-180.0, 180.0));
     command->add_option("--secondary", view.secondary_deg, "deg, positive = cranial")->check(CLI::Range(-90.0, 90.0));
+    command
+        ->add_option_function<std::string>(
+            "--view",
+            [&view](const std::string& name) {
+                const ViewPreset& preset = *find_view(name);
+                view.primary_deg = preset.primary_deg;
+                view.secondary_deg = preset.secondary_deg;
+            },
+            "both angles by a name: see `cathlab list views`")
+        ->check(CLI::IsMember(view_names()))
+        ->excludes("--primary")
+        ->excludes("--secondary");
+    command->add_option("--collimator-width", view.open_width, "share of the field's width that is open")
+        ->check(CLI::Range(0.1, 1.0));
+    command->add_option("--collimator-height", view.open_height, "share of its height")->check(CLI::Range(0.1, 1.0));
     command->add_option("--sid", view.sid_mm, "mm, source to detector")->check(CLI::Range(600.0, 1500.0));
     command->add_option("--sod", view.sod_mm, "mm, source to isocentre")->check(CLI::Range(400.0, 1200.0));
     command->add_option("--field-of-view", view.field_mm, "mm, side of the detector's field")

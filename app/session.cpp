@@ -5,6 +5,7 @@
 
 #include "core/errors.h"
 #include "progress.h"
+#include "scene/script.h"
 #include "step/step.h"
 #include "world/step_settings.h"
 
@@ -50,10 +51,7 @@ void Session::step(const Input& input) {
 }
 
 Input Session::base_input() const {
-    Input input;
-    input.primary_angle = scene_.c_arm.primary_deg;
-    input.secondary_angle = scene_.c_arm.secondary_deg;
-    return input;
+    return cathlab::base_input(scene_);
 }
 
 std::vector<std::string> Session::entity_names() {

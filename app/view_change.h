@@ -11,7 +11,8 @@ namespace cathlab {
 struct ViewChange {
     std::optional<double> primary_deg, secondary_deg;  ///< + LAO, + cranial; held for the whole film
     std::optional<double> sid_mm, sod_mm, field_mm;
-    std::optional<double> kerma_ngy;  ///< at the detector, a picture
+    std::optional<double> open_width, open_height;  ///< of the collimator, shares of the field
+    std::optional<double> kerma_ngy;                ///< at the detector, a picture
     std::optional<double> kvp;
     std::string detector;           ///< "" = the scene's
     std::vector<double> isocentre;  ///< empty, or x, y, z in the patient, mm

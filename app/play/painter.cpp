@@ -99,6 +99,7 @@ void Painter::paint_view(Easel& easel, View view, Shot& shot, const PaintSizes& 
     frame.show_fluoroscopy = view == View::fluoroscopy;
     frame.show_inner_view = view == View::inner;
     frame.show_outer_view = view == View::outer;
+    frame.show_reference = false;  // the window keeps its own
     frame.overlay = {};
     const auto begin = Clock::now();
     try {

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "beam/view_presets.h"
+#include "core/input.h"
+#include "scene/script.h"
+
 namespace cathlab::play {
 namespace {
 
@@ -13,7 +17,8 @@ constexpr double follow_share = 0.26;   // of the field at the isocentre: within
 constexpr double follow_past = 0.12;    // then the table moves the tip to so far on the other side, and stands again
 constexpr double follow_rest_s = 0.25;  // seconds that the table would take for what is left: it comes to rest softly
 constexpr double follow_ends_mm = 1.0;
-constexpr double magnification = 1.4;  // SID / SOD, roughly: the field that is seen in the patient is smaller
+constexpr double blades_share_s = 0.5;  // of the field a second, while the hand holds them
+constexpr double magnification = 1.4;   // SID / SOD, roughly: the field that is seen in the patient is smaller
 
 }  // namespace
 
@@ -23,14 +28,22 @@ Pilot::Pilot(const SceneSpec& scene, const Vec3& isocentre)
       middle_(isocentre),
       field_mm_(scene.c_arm.field_of_view_mm / magnification) {
     device_ = has_wire_ ? 0 : 1;
-    input_.primary_angle = scene.c_arm.primary_deg;
-    input_.secondary_angle = scene.c_arm.secondary_deg;
+    input_ = base_input(scene);
     input_.device = device_;
 }
 
 void Pilot::turn_to(double primary_deg, double secondary_deg) {
     input_.primary_angle = std::clamp(primary_deg, -180.0, 180.0);
     input_.secondary_angle = std::clamp(secondary_deg, -90.0, 90.0);
+}
+
+void Pilot::open_to(double width, double height) {
+    const auto within = [](const char* action, double value) {
+        const ActionInfo& info = *find_action(action);
+        return std::clamp(value, info.minimum, info.maximum);
+    };
+    input_.collimator_width = within("collimator_width", width);
+    input_.collimator_height = within("collimator_height", height);
 }
 
 bool Pilot::pressed(const Controls& controls, Control control) {
@@ -93,6 +106,26 @@ void Pilot::imaging(const Controls& controls, const InputSettings& settings, con
     input_.table_lateral = std::clamp(input_.table_lateral + across_mm, -200.0, 200.0);
 }
 
+// What stands on the console beside the pedal.
+void Pilot::console(const Controls& controls, double dt) {
+    const auto next_of_three = [](double value) { return value >= 2.0 ? 0.0 : value + 1.0; };
+    if (pressed(controls, Control::acquisition)) input_.acquisition = next_of_three(input_.acquisition);
+    if (pressed(controls, Control::fluoroscopy_level))
+        input_.fluoroscopy_level = next_of_three(input_.fluoroscopy_level);
+    if (pressed(controls, Control::roadmap)) input_.roadmap = 1.0 - input_.roadmap;
+    if (!roadmap_allowed_) input_.roadmap = 0.0;
+    input_.reference =
+        pressed(controls, Control::reference) ? 1.0 : 0.0;  // for one step: the picture is kept as it rises
+    if (pressed(controls, Control::named_view)) {
+        const ViewPreset& view = view_after(input_.primary_angle, input_.secondary_angle);
+        turn_to(view.primary_deg, view.secondary_deg);
+    }
+    const double wide = controls[Control::collimator_width], high = controls[Control::collimator_height];
+    if (wide != 0.0 || high != 0.0)
+        open_to(input_.collimator_width + wide * blades_share_s * dt,
+                input_.collimator_height + high * blades_share_s * dt);
+}
+
 Input Pilot::step(const Controls& controls, const InputSettings& settings, const Channels& channels, double dt) {
     if (first_) before_ = controls;  // what was pressed before the start is over
     first_ = false;
@@ -117,6 +150,7 @@ Input Pilot::step(const Controls& controls, const InputSettings& settings, const
         direction = std::clamp(direction, -720.0, 720.0);
     }
     imaging(controls, settings, channels, dt);
+    console(controls, dt);
     before_ = controls;
     return input_;
 }

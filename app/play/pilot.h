@@ -29,17 +29,27 @@ public:
     void set_follows(bool yes) { follows_ = yes; }
     /// The C-arm goes there.
     void turn_to(double primary_deg, double secondary_deg);
+    /// What the pedal exposes: 0 fluoroscopy, 1 cine, 2 DSA.
+    void acquire(int what) { input_.acquisition = what; }
+    /// Dose of fluoroscopy: 0 low, 1 normal, 2 high.
+    void set_level(int level) { input_.fluoroscopy_level = level; }
+    /// The blades go there: shares of the field, 0.1 to 1.
+    void open_to(double width, double height);
+    /// Whether the roadmap may be had; where it may not, it goes off.
+    void allow_roadmap(bool yes) { roadmap_allowed_ = yes; }
 
 private:
     bool pressed(const Controls& controls, Control control);
     double advance(const Controls& controls, const InputSettings& settings, double slow, double dt);
     void imaging(const Controls& controls, const InputSettings& settings, const Channels& channels, double dt);
+    void console(const Controls& controls, double dt);
 
     bool has_wire_, has_catheter_;
     Vec3 middle_;  // of the picture when the table stands at 0: world
     double field_mm_;
     int device_ = 0, segment_ = 1;
     bool jog_ = false, moves_table_ = false, follows_ = true, pedal_ = false, pedal_was_down_ = false;
+    bool roadmap_allowed_ = true;
     int jog_direction_ = 0;
     int follow_way_ = 0;  // which way the table is on, to bring the tip back into the picture
     double jog_left_mm_ = 0.0;

@@ -112,6 +112,7 @@ void PlayApp::begin_load(const std::string& folder) {
 void PlayApp::begin_session(std::unique_ptr<Simulation> simulation) {
     inner_allowed_ = !simulation->watch().task() || simulation->watch().task()->inner_view;
     simulation->pilot().set_follows(asked_.difficulty != Difficulty::exam);
+    simulation->pilot().allow_roadmap(roadmap_allowed());
     if (!simulation->recording_fault().empty()) say(simulation->recording_fault());
     const std::string instructions = simulation->watch().task() ? simulation->watch().task()->instructions : "";
     sim_ = std::make_unique<SimThread>(std::move(simulation), options_.threaded);
@@ -260,13 +261,10 @@ void PlayApp::act(Control control) {
         case Control::fullscreen: settings_.view.fullscreen = !settings_.view.fullscreen; break;
         case Control::view: next_side(); break;
         case Control::reference:
-            if (fluoroscopy_.rgb.empty()) {
-                say("there is no picture yet to keep: X-rays first");
-                break;
-            }
-            kept_ = fluoroscopy_;
-            ++kept_revision_;
-            side_ = Side::kept;
+            if (fluoroscopy_.rgb.empty()) say("there is no picture yet to keep: X-rays first");
+            break;  // what is kept comes with the step that knows of it, so that a replay keeps it, too
+        case Control::roadmap:
+            if (!roadmap_allowed()) say("no roadmap at this difficulty");
             break;
         case Control::clip: save_clip(); break;
         case Control::screenshot: shot_wanted_ = true; break;
@@ -406,7 +404,9 @@ bool PlayApp::frame(double dt) {
     if (sim_) {
         if (!options_.threaded) sim_->run_for(dt);
         const std::string fault = status_.recording_fault;
+        const double references = status_.channels.references;
         status_ = sim_->status();
+        if (status_.channels.references > references) keep_picture();
         if (status_.recording_fault != fault) say(status_.recording_fault);
         if (!status_.fault.empty()) say("the simulation has stopped: " + status_.fault);
     }

@@ -131,6 +131,7 @@ private:
     void note_latency();
     void rest(Clock::time_point begin);
     void next_side();
+    void keep_picture();
     void say(const std::string& text, double shown_s = 5.0);
     void screenshot();
     void save_clip();
@@ -139,6 +140,7 @@ private:
     void seek(std::int64_t step);
     bool steering() const { return screen_ == Screen::play && panels_.empty(); }
     bool views_allowed() const { return asked_.difficulty != Difficulty::exam && inner_allowed_; }
+    bool roadmap_allowed() const { return asked_.difficulty != Difficulty::exam; }
     Paused paused_what() const;
     StudyView study_view() const;
 

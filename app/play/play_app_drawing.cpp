@@ -58,7 +58,7 @@ void PlayApp::lay_out() {
     const float bars = force_bar_rect(hud, std::max<std::size_t>(1, status_.panels.forces.size()), 0).y0;
     const auto free = static_cast<int>(bars - 2.6F * step - 4.0F * hud_scale_ - 3.4F * step);
     const int column = w - side;
-    const int panel = std::min(std::max(0, free), static_cast<int>(8.4F * layout_.em));
+    const int panel = std::min(std::max(0, free), static_cast<int>(11.6F * layout_.em));
     const int view = std::max(0, free - panel);
     layout_.side = view >= 64 && column >= 64 ? FrameRect{side, 0, column, view} : FrameRect{};
     layout_.panel = column >= 64 && panel >= 32 ? FrameRect{side, view, column, panel} : FrameRect{};
@@ -82,6 +82,13 @@ void PlayApp::set_side(Side side) {
     side_ = side;
     const OuterMap map = side_ == Side::force ? OuterMap::force : OuterMap::displacement;
     if (sim_) sim_->between_steps([&](Simulation& simulation) { simulation.set_outer_map(map); });
+}
+
+void PlayApp::keep_picture() {
+    if (fluoroscopy_.rgb.empty()) return;
+    kept_ = fluoroscopy_;
+    ++kept_revision_;
+    side_ = Side::kept;
 }
 
 void PlayApp::next_side() {
@@ -121,6 +128,7 @@ void PlayApp::draw_screens(double dt) {
         PlayView view;
         view.status = status_;
         view.difficulty = setup_.difficulty;
+        view.roadmap_allowed = roadmap_allowed();
         view.side_title = layout_.side.width == 0 ? "" : side_title(side_);
         view.hands_open = hands_open_;
         view.recording = status_.recording_fault.empty() && !loader_.folder().empty();
@@ -135,6 +143,15 @@ void PlayApp::draw_screens(double dt) {
         wishes.hold = [&](Control control, double value) { input_.hold(control, value); };
         wishes.turn_to = [&](double primary, double secondary) {
             if (sim_) sim_->between_steps([&](Simulation& s) { s.pilot().turn_to(primary, secondary); });
+        };
+        wishes.acquire = [&](int what) {
+            if (sim_) sim_->between_steps([&](Simulation& s) { s.pilot().acquire(what); });
+        };
+        wishes.set_level = [&](int level) {
+            if (sim_) sim_->between_steps([&](Simulation& s) { s.pilot().set_level(level); });
+        };
+        wishes.open_to = [&](double width, double height) {
+            if (sim_) sim_->between_steps([&](Simulation& s) { s.pilot().open_to(width, height); });
         };
         wishes.seek = [&](std::int64_t step) { sought = step; };
         draw_play(view, layout_, settings_.bindings, wishes);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "beam/view_presets.h"
 #include "hud/hud_data.h"
 #include "play/screens.h"
 #include "play/view_projection.h"
@@ -20,6 +21,15 @@ constexpr ImU32 ink = IM_COL32(235, 240, 244, 255);
 void place(const FrameRect& r) {
     ImGui::SetNextWindowPos(ImVec2(static_cast<float>(r.x), static_cast<float>(r.y)));
     ImGui::SetNextWindowSize(ImVec2(static_cast<float>(r.width), static_cast<float>(r.height)));
+}
+
+std::string angles_text(double primary_deg, double secondary_deg) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%s %.0f", primary_deg < 0.0 ? "RAO" : "LAO", std::fabs(primary_deg));
+    std::string out = text;
+    if (secondary_deg == 0.0) return out;
+    std::snprintf(text, sizeof text, ", %s %.0f", secondary_deg < 0.0 ? "CAUD" : "CRAN", std::fabs(secondary_deg));
+    return out + text;
 }
 
 void shadowed(ImDrawList* list, ImVec2 at, ImU32 color, const std::string& text) {
@@ -94,18 +104,60 @@ void draw_device_row(const PlayView& view, PlayWishes& wishes) {
     if (ImGui::Checkbox("table follows", &follows)) wishes.press(Control::follow);
 }
 
-void draw_arm_row(const PlayView& view, PlayWishes& wishes) {
-    struct Preset {
-        const char* name;
-        double primary, secondary;
-    };
-    constexpr Preset presets[] = {
-        {"AP", 0, 0}, {"LAO 40", 40, 0}, {"RAO 30", -30, 0}, {"lateral", 90, 0}, {"LAO 20", 20, 0}};
+// The C-arm's angle by name, and the picture that stays.
+void draw_arm_row(const PlayView& view, const ScreenLayout& layout, PlayWishes& wishes) {
+    const Input& input = view.status.input;
+    const ViewPreset* here = view_at(input.primary_angle, input.secondary_angle);
     ImGui::TextDisabled(view.status.moves_table ? "D-pad: table" : "C-arm");
-    for (const Preset& preset : presets) {
-        ImGui::SameLine();
-        if (ImGui::SmallButton(preset.name)) wishes.turn_to(preset.primary, preset.secondary);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(9.0F * layout.em);
+    if (ImGui::BeginCombo("##view", here == nullptr ? "by hand" : spoken(std::string(here->name)).c_str())) {
+        for (const ViewPreset& preset : view_presets()) {
+            const std::string text =
+                spoken(std::string(preset.name)) + ": " + angles_text(preset.primary_deg, preset.secondary_deg);
+            if (ImGui::Selectable(text.c_str(), &preset == here))
+                wishes.turn_to(preset.primary_deg, preset.secondary_deg);
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", preset.shows.data());
+        }
+        ImGui::EndCombo();
     }
+    ImGui::SameLine();
+    if (ImGui::Button("Keep picture")) wishes.press(Control::reference);
+}
+
+// What the pedal exposes.
+void draw_series_row(const PlayView& view, const ScreenLayout& layout, PlayWishes& wishes) {
+    const Input& input = view.status.input;
+    const char* names[] = {"fluoro", "cine", "DSA"};
+    for (int i = 0; i < 3; ++i) {
+        if (ImGui::RadioButton(names[i], std::lround(input.acquisition) == i)) wishes.acquire(i);
+        ImGui::SameLine();
+    }
+    bool roadmap = input.roadmap > 0.5;
+    ImGui::BeginDisabled(!view.roadmap_allowed);
+    if (ImGui::Checkbox("roadmap", &roadmap)) wishes.press(Control::roadmap);
+    ImGui::EndDisabled();
+    const char* doses[] = {"low dose", "normal dose", "high dose"};
+    const int level = std::clamp(static_cast<int>(std::lround(input.fluoroscopy_level)), 0, 2);
+    ImGui::SetNextItemWidth(7.5F * layout.em);
+    if (ImGui::BeginCombo("##dose", doses[level])) {
+        for (int i = 0; i < 3; ++i)
+            if (ImGui::Selectable(doses[i], i == level)) wishes.set_level(i);
+        ImGui::EndCombo();
+    }
+    ImGui::SameLine();
+    ImGui::TextDisabled("blades");
+    auto wide = static_cast<float>(100.0 * input.collimator_width);
+    auto high = static_cast<float>(100.0 * input.collimator_height);
+    bool moved = false;
+    for (float* share : {&wide, &high}) {
+        ImGui::SameLine();
+        ImGui::SetNextItemWidth(5.5F * layout.em);
+        moved = ImGui::SliderFloat(share == &wide ? "##wide" : "##high", share, 10.0F, 100.0F,
+                                   share == &wide ? "wide %.0f %%" : "high %.0f %%") ||
+                moved;
+    }
+    if (moved) wishes.open_to(0.01 * static_cast<double>(wide), 0.01 * static_cast<double>(high));
 }
 
 void draw_state(const PlayView& view, const Bindings& bindings) {
@@ -197,7 +249,8 @@ void draw_play(const PlayView& view, const ScreenLayout& layout, const Bindings&
             draw_time_line(view, wishes);
         else {
             draw_device_row(view, wishes);
-            draw_arm_row(view, wishes);
+            draw_arm_row(view, layout, wishes);
+            draw_series_row(view, layout, wishes);
         }
         draw_state(view, bindings);
         ImGui::SameLine();

@@ -76,6 +76,9 @@ struct PlayWishes {
     std::function<void(Control)> press;
     std::function<void(Control, double)> hold;
     std::function<void(double primary_deg, double secondary_deg)> turn_to;
+    std::function<void(int what)> acquire;                     ///< 0 fluoroscopy, 1 cine, 2 DSA
+    std::function<void(int level)> set_level;                  ///< 0 low, 1 normal, 2 high
+    std::function<void(double width, double height)> open_to;  ///< the collimator, shares of the field
     std::function<void(std::int64_t step)> seek;
     bool menu = false, hands = false;
 };
@@ -84,7 +87,7 @@ struct PlayView {
     Difficulty difficulty = Difficulty::standard;
     std::string task;        ///< its instructions, "" = none
     std::string side_title;  ///< of the view beside the fluoroscopy
-    bool hands_open = false;
+    bool hands_open = false, roadmap_allowed = true;
     bool recording = false, replay = false;
     double latency_ms = 0.0;
     std::vector<std::string> toasts;

@@ -114,6 +114,7 @@ void SimThread::publish() {
         shots_.exposures.publish();
     }
     status_.channels = simulation_->channels();
+    status_.input = simulation_->input();
     simulation_->fill_panels(status_.panels);
     status_.goal = simulation_->goal();
     status_.view = shot.picture.view;

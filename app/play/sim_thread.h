@@ -33,6 +33,7 @@ struct Shots {
 /// What the screens show, copied whole.
 struct Status {
     Channels channels;
+    Input input;  ///< of the last step: the hand's, or the replay's
     HudData panels;
     GoalView goal;
     CArmView view;

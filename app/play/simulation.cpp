@@ -65,14 +65,13 @@ void Simulation::step(const Controls& controls, const InputSettings& settings) {
     input_ = options_.replay ? options_.replay->input_at(steps_)
                              : pilot_.step(controls, settings, channels(), session_.dt());
     if (recorder_) recorder_->before(input_);
-    const auto before = session_.world().step_index;
     session_.step(input_);
     if (recorder_) recorder_->after();
     for (const Event& event : session_.events()) messages_.add(event);
     const Channels& c = channels();
     if (!std::isfinite(c.wire_tip_x_mm + c.catheter_tip_x_mm + c.wall_displacement_max_mm))
         throw std::runtime_error("its numbers are no longer finite; begin again");
-    if (c.beam_on > 0.5 && pulse_in_step(before, session_.dt(), options_.scene.c_arm.frame_rate)) ++pulses_;
+    pulses_ = static_cast<std::uint64_t>(c.exposures);
     watch_.add(session_.world(), c, session_.dt());
     course_.add(c, options_.task ? options_.task->device == "wire" : input_.device < 0.5);
     ++steps_;

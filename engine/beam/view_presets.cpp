@@ -1,6 +1,7 @@
 #include "beam/view_presets.h"
 
 #include <array>
+#include <cmath>
 
 namespace cathlab {
 namespace {
@@ -30,6 +31,20 @@ const ViewPreset* find_view(std::string_view name) {
     for (const ViewPreset& preset : presets)
         if (preset.name == name) return &preset;
     return nullptr;
+}
+
+const ViewPreset* view_at(double primary_deg, double secondary_deg) {
+    constexpr double near_deg = 0.5;
+    for (const ViewPreset& preset : presets)
+        if (std::fabs(preset.primary_deg - primary_deg) < near_deg &&
+            std::fabs(preset.secondary_deg - secondary_deg) < near_deg)
+            return &preset;
+    return nullptr;
+}
+
+const ViewPreset& view_after(double primary_deg, double secondary_deg) {
+    const ViewPreset* here = view_at(primary_deg, secondary_deg);
+    return here == nullptr || here == &presets.back() ? presets.front() : *(here + 1);
 }
 
 std::vector<std::string> view_names() {

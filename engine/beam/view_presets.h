@@ -23,6 +23,12 @@ std::span<const ViewPreset> view_presets();
 /// nullptr where there is none of that name.
 const ViewPreset* find_view(std::string_view name);
 
+/// The one that has these angles (to 0.5 deg), or nullptr.
+const ViewPreset* view_at(double primary_deg, double secondary_deg);
+
+/// The one after it in the list; the first where these angles have no name.
+const ViewPreset& view_after(double primary_deg, double secondary_deg);
+
 /// For an error's list.
 std::vector<std::string> view_names();
 

@@ -4,6 +4,7 @@
 #include "core/errors.h"
 #include "scene/build_world.h"
 #include "scene/load_scene.h"
+#include "scene/script.h"
 #include "step/step.h"
 #include "world/world.h"
 
@@ -107,9 +108,7 @@ World& Simulator::world() {
 
 std::vector<double> Simulator::idle() const {
     std::vector<double> action;
-    Input input;
-    input.primary_angle = impl_->scene.c_arm.primary_deg;
-    input.secondary_angle = impl_->scene.c_arm.secondary_deg;
+    const Input input = base_input(impl_->scene);
     for (const ActionInfo& info : action_table()) action.push_back(input.*info.value);
     return action;
 }

@@ -14,4 +14,10 @@ CATHLAB_ACTION(secondary_angle,        "deg",   linear, 0.0,  -90.0,  90.0, "C-a
 CATHLAB_ACTION(table_longitudinal,     "mm",    linear, 0.0, -1000.0, 1000.0, "table, positive = towards the feet, so that the picture shows what lies nearer the head")
 CATHLAB_ACTION(table_lateral,          "mm",    linear, 0.0, -200.0, 200.0, "table, positive = towards the patient's right, so that the picture shows what lies further left")
 CATHLAB_ACTION(contrast,               "mL/s",  hold,   0.0,    0.0,  30.0, "flow of contrast medium from the selected device's tip")
+CATHLAB_ACTION(acquisition,            "1",     hold,   0.0,    0.0,   2.0, "what the pedal exposes: 0 or 'fluoroscopy', 1 or 'cine', 2 or 'dsa' (digital subtraction)")
+CATHLAB_ACTION(fluoroscopy_level,      "1",     hold,   1.0,    0.0,   2.0, "dose of fluoroscopy: 0 or 'low', 1 or 'normal', 2 or 'high'")
+CATHLAB_ACTION(roadmap,                "1",     hold,   0.0,    0.0,   1.0, "1 while the fluoroscopy is shown over the vessels of the last cine or DSA series with medium in them")
+CATHLAB_ACTION(reference,              "1",     hold,   0.0,    0.0,   1.0, "the picture is kept as the reference when this goes to 1")
+CATHLAB_ACTION(collimator_width,       "1",     hold,   1.0,    0.1,   1.0, "share of the field's width that the collimator leaves open")
+CATHLAB_ACTION(collimator_height,      "1",     hold,   1.0,    0.1,   1.0, "share of the field's height that the collimator leaves open")
 // clang-format on

@@ -48,4 +48,11 @@ CATHLAB_CHANNEL(secondary_angle_deg,         "deg",    "C-arm, positive = crania
 CATHLAB_CHANNEL(table_longitudinal_mm,       "mm",     "table, positive = towards the feet: the picture shows what lies nearer the head")
 CATHLAB_CHANNEL(table_lateral_mm,            "mm",     "table, positive = towards the patient's right: the picture shows what lies further left")
 CATHLAB_CHANNEL(contrast_injected_ml,        "mL",     "contrast medium injected since the start")
+CATHLAB_CHANNEL(exposures,                   "1",      "pictures exposed since the start")
+CATHLAB_CHANNEL(exposure_series,             "1",      "how often the pedal went down or changed what it exposes")
+CATHLAB_CHANNEL(acquisition,                 "1",      "what the pedal exposes: 0 fluoroscopy, 1 cine, 2 digital subtraction")
+CATHLAB_CHANNEL(roadmap,                     "1",      "1 while the fluoroscopy is shown over a roadmap")
+CATHLAB_CHANNEL(references,                  "1",      "how often the picture was kept as the reference")
+CATHLAB_CHANNEL(collimator_width,            "1",      "share of the field's width that the collimator leaves open")
+CATHLAB_CHANNEL(collimator_height,           "1",      "share of the field's height that the collimator leaves open")
 // clang-format on

@@ -25,6 +25,7 @@ struct HudData {
     double sid_mm = 0;
     double field_mm = 0;  ///< side of the field of view at the detector
     bool beam_on = false;
+    std::string acquisition;  ///< "", "CINE", "DSA" or "ROADMAP": what is not plain fluoroscopy
     double kvp = 0;
     double pulses_per_s = 0;
     double beam_on_s = 0;

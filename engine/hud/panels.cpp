@@ -62,7 +62,8 @@ void draw_picture_text(const Pen& pen, const HudData& d, const HudLayout& l) {
     pen.put(m, m + 2.2F * step, faint, text("%.0f kVp  %.3g p/s", d.kvp, d.pulses_per_s), 12);
 
     // Lamp: shape and word as well as colour.
-    const std::string word = d.beam_on ? "X-RAY ON" : "X-RAY OFF";
+    const std::string word =
+        (d.acquisition.empty() ? "" : d.acquisition + "   ") + (d.beam_on ? "X-RAY ON" : "X-RAY OFF");
     const float lamp_x = l.split - m - 5 * l.scale;
     const ImVec2 lamp(lamp_x, m + 8 * l.scale);
     if (d.beam_on) {

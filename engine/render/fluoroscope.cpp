@@ -9,6 +9,7 @@
 #include "core/errors.h"
 #include "core/mesh.h"
 #include "render/attenuation.h"
+#include "render/closed_surface.h"
 #include "render/detector.h"
 #include "render/device_chords.h"
 #include "render/fast_math.h"
@@ -76,8 +77,8 @@ struct Fluoroscope::Impl {
     double beam_kvp = 0, beam_copper = -1;
 
     std::vector<std::unique_ptr<PathSurface>> solid_surfaces;  // one a solid
-    std::uint64_t solids_revision = 0;
-    bool solids_known = false;
+    std::uint64_t solids_revision = 0, lumen_revision = 0;
+    bool solids_known = false, lumen_known = false;
     PathRaster raster;  // of the lumen and of the wall's outer surface
 
     // The context of the present view.
@@ -126,6 +127,7 @@ struct Fluoroscope::Impl {
         if (solids_known && solids_revision == f.solids_revision && solid_surfaces.size() == f.solids.size()) return;
         solid_surfaces.clear();
         for (const FrameSolid& solid : f.solids) {
+            require_closed(solid.mesh, "solid of " + solid.material);
             solid_surfaces.push_back(buffer.make_surface());
             buffer.set_triangles(*solid_surfaces.back(), solid.mesh.triangles);
         }
@@ -257,6 +259,11 @@ void Fluoroscope::Impl::draw_moving(const FrameDescription& f, const Projection&
 
 void Fluoroscope::Impl::draw_lumen(const FrameDescription& f, const Projection& projection) {
     if (f.lumen.triangles.empty()) return;
+    if (!lumen_known || lumen_revision != f.lumen.topology_revision) {
+        require_closed({f.lumen.vertices, f.lumen.triangles}, "lumen");
+        lumen_revision = f.lumen.topology_revision;
+        lumen_known = true;
+    }
     const bool has_wall = !f.lumen.wall_material.empty() && !f.lumen.wall_mm.empty();
     Part& inner = next_part();
     raster.draw(projection, f.lumen.vertices, f.lumen.triangles, f.lumen.contrast_mg_ml, inner.lengths);

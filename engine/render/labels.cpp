@@ -5,9 +5,12 @@
 #include <utility>
 
 #include "core/check.h"
+#include "render/attenuation.h"
 #include "render/device_chords.h"
 #include "render/image_intensifier.h"
 #include "render/projection.h"
+#include "render/shutter.h"
+#include "render/view_key.h"
 
 namespace cathlab {
 
@@ -53,6 +56,12 @@ std::vector<FrameLabels::Mask> region_masks(const FrameLumen& lumen, const Label
         inside.resize(count);
         const auto at = [&](int k) { return places[static_cast<std::size_t>(t[k])]; };
         fill(at(0), at(1), at(2), projection.width(), projection.height(), inside);
+        std::vector<std::uint8_t>& visible = masks[static_cast<std::size_t>(region)].visible;
+        visible.resize(count);
+        if (lumen.contrast_mg_ml.empty()) continue;
+        double medium = 0.0;
+        for (int k = 0; k < 3; ++k) medium += lumen.contrast_mg_ml[static_cast<std::size_t>(t[k])] / 3.0;
+        if (medium > source.seen_mg_ml) fill(at(0), at(1), at(2), projection.width(), projection.height(), visible);
     }
     for (std::size_t r = 0; r < masks.size(); ++r) masks[r].name = source.region_names[r];
     std::erase_if(masks, [](const FrameLabels::Mask& m) {
@@ -61,25 +70,74 @@ std::vector<FrameLabels::Mask> region_masks(const FrameLumen& lumen, const Label
     return masks;
 }
 
-std::vector<FrameLabels::Mask> device_masks(const std::vector<FrameDevice>& devices, const Projection& projection,
+// Attenuation of a device's materials beyond what they displace, of the detector's whole signal, 1/mm.
+std::vector<double> device_mu(const FrameDevice& device, const BeamTable& beam) {
+    std::vector<double> out;
+    const BinValues outside = beam.attenuation(device.surrounding);
+    for (const std::string& material : device.materials) {
+        const BinValues inside = beam.attenuation(material);
+        double mu = 0.0;
+        for (std::size_t k = 0; k < energy_bins; ++k)
+            mu += static_cast<double>(beam.weights()[k]) * static_cast<double>(inside[k] - outside[k]);
+        out.push_back(mu);
+    }
+    return out;
+}
+
+std::vector<FrameLabels::Mask> device_masks(const FrameDescription& frame, const Projection& projection,
                                             const Workers& workers) {
+    const std::vector<FrameDevice>& devices = frame.devices;
     std::vector<ChordPiece> pieces;
     std::vector<FrameLabels::Mask> masks;
+    std::vector<double> mu;  // one a medium; a device's media lie together
+    std::vector<std::size_t> device_of;
     const std::size_t count =
         static_cast<std::size_t>(projection.width()) * static_cast<std::size_t>(projection.height());
+    const BeamTable beam(generator_kvp(frame.exposure), frame.exposure.copper_mm);
     for (std::size_t i = 0; i < devices.size(); ++i) {
-        append_pieces(devices[i], std::vector<std::uint8_t>(devices[i].materials.size(), static_cast<std::uint8_t>(i)),
-                      pieces);
-        masks.push_back({devices[i].name, std::vector<std::uint8_t>(count)});
-    }
-    DeviceLengths drawn;
-    draw_devices(pieces, static_cast<int>(devices.size()), projection, rays_a_side, workers, drawn);
-    for (std::size_t n = 0; n < drawn.pixel.size(); ++n) {
-        for (std::size_t i = 0; i < devices.size(); ++i) {
-            if (drawn.length_mm[n * devices.size() + i] > 0.0F) masks[i].inside[drawn.pixel[n]] = 1;
+        std::vector<std::uint8_t> medium_of;
+        for (const double value : device_mu(devices[i], beam)) {
+            medium_of.push_back(static_cast<std::uint8_t>(mu.size()));
+            mu.push_back(value);
+            device_of.push_back(i);
         }
+        append_pieces(devices[i], medium_of, pieces);
+        masks.push_back({devices[i].name, std::vector<std::uint8_t>(count), std::vector<std::uint8_t>(count)});
+    }
+    if (devices.empty()) return masks;
+    DeviceLengths drawn;
+    draw_devices(pieces, static_cast<int>(mu.size()), projection, rays_a_side, workers, drawn);
+    std::vector<double> shadow(devices.size());
+    for (std::size_t n = 0; n < drawn.pixel.size(); ++n) {
+        std::fill(shadow.begin(), shadow.end(), 0.0);
+        for (std::size_t m = 0; m < mu.size(); ++m) {
+            const auto length = static_cast<double>(drawn.length_mm[n * mu.size() + m]);
+            if (length <= 0.0) continue;
+            masks[device_of[m]].inside[drawn.pixel[n]] = 1;
+            shadow[device_of[m]] += mu[m] * length;
+        }
+        const auto deepest = std::max_element(shadow.begin(), shadow.end());
+        if (*deepest > 0.0) masks[static_cast<std::size_t>(deepest - shadow.begin())].visible[drawn.pixel[n]] = 1;
     }
     return masks;
+}
+
+// What blades shade, and of a vessel what a device covers, is not to be seen.
+void hide(FrameLabels& labels, const CArmView& view) {
+    const auto columns = static_cast<std::size_t>(labels.width);
+    const bool shaded = view.open_width < 1.0 || view.open_height < 1.0;
+    for (std::vector<FrameLabels::Mask>* masks : {&labels.devices, &labels.regions}) {
+        for (FrameLabels::Mask& mask : *masks) {
+            for (std::size_t i = 0; i < mask.visible.size(); ++i) {
+                if (mask.visible[i] == 0) continue;
+                if (shaded && !(is_open(static_cast<double>(i % columns) + 0.5, labels.width, view.open_width) &&
+                                is_open(static_cast<double>(i / columns) + 0.5, labels.height, view.open_height)))
+                    mask.visible[i] = 0;
+                for (const FrameLabels::Mask& device : labels.devices)
+                    if (masks == &labels.regions && device.inside[i] != 0) mask.visible[i] = 0;
+            }
+        }
+    }
 }
 
 // Masks as an image intensifier shows them.
@@ -88,8 +146,8 @@ void bend(std::vector<FrameLabels::Mask>& masks, const FrameDetector& detector, 
     if (bent.none() && !detector.round_field) return;
     const Vec2 middle(0.5 * width, 0.5 * height);
     const double radius = detector.round_field ? 0.5 * std::min(width, height) : 1e18;
-    for (FrameLabels::Mask& mask : masks) {
-        const std::vector<std::uint8_t> flat = mask.inside;
+    const auto bend_one = [&](std::vector<std::uint8_t>& inside) {
+        const std::vector<std::uint8_t> flat = inside;
         std::size_t i = 0;
         for (int y = 0; y < height; ++y) {
             for (int x = 0; x < width; ++x, ++i) {
@@ -97,11 +155,15 @@ void bend(std::vector<FrameLabels::Mask>& masks, const FrameDetector& detector, 
                 const Vec2 from = bent.pinhole(here);
                 const bool out = (here - middle).norm() > radius || from.x() < 0 || from.y() < 0 || from.x() >= width ||
                                  from.y() >= height;
-                mask.inside[i] = out ? std::uint8_t{0}
-                                     : flat[static_cast<std::size_t>(from.y()) * static_cast<std::size_t>(width) +
-                                            static_cast<std::size_t>(from.x())];
+                inside[i] = out ? std::uint8_t{0}
+                                : flat[static_cast<std::size_t>(from.y()) * static_cast<std::size_t>(width) +
+                                       static_cast<std::size_t>(from.x())];
             }
         }
+    };
+    for (FrameLabels::Mask& mask : masks) {
+        bend_one(mask.inside);
+        bend_one(mask.visible);
     }
 }
 
@@ -141,13 +203,16 @@ FrameLabels label_frame(const FrameDescription& frame, const LabelSource& source
     FrameLabels out;
     out.width = width;
     out.height = height;
-    out.devices = device_masks(frame.devices, projection, workers);
+    out.devices = device_masks(frame, projection, workers);
     out.regions = region_masks(frame.lumen, source, projection);
     bend(out.devices, detector, width, height);
     bend(out.regions, detector, width, height);
+    hide(out, frame.view);
     for (const LabelSource::Point& p : source.points) {
         FrameLabels::Point point{p.name, p.position, place(p.position), 0};
-        if (in_picture(point.world, point.pixel)) point.visibility = p.seen ? 2 : 1;
+        const bool open = is_open(point.pixel.x(), width, frame.view.open_width) &&
+                          is_open(point.pixel.y(), height, frame.view.open_height);
+        if (in_picture(point.world, point.pixel)) point.visibility = p.seen && open ? 2 : 1;
         out.points.push_back(std::move(point));
     }
     for (const FrameDevice& device : frame.devices) {

@@ -21,16 +21,20 @@ struct LabelSource {
         bool seen = false;  ///< whether the picture shows it: a device's tip, or an ostium with contrast medium in it
     };
     std::vector<Point> points;
+    double seen_mg_ml = 5.0;  ///< of iodine in a vessel before a picture shows it (an assumption)
 };
 
 /// Places are pixel coordinates of the picture: pixel (i, j) covers [i, i+1) x [j, j+1), 0 0 = its upper left corner.
 struct FrameLabels {
     int width = 0, height = 0;
-    /// The whole silhouette, whatever lies before or behind it: X-rays pass (amodal).  One byte a pixel, 0 or 1, rows
-    /// from the top.  Of regions only those that are in the picture.
+    /// One byte a pixel, 0 or 1, rows from the top.  Of regions only those that are in the picture.
     struct Mask {
         std::string name;
-        std::vector<std::uint8_t> inside;
+        std::vector<std::uint8_t> inside;  ///< the whole silhouette, whatever lies before or behind it (amodal)
+        /// What of it the picture shows (modal), part of `inside` and of the collimator's field.  X-rays pass, so what
+        /// lies before does not hide; of two devices a pixel belongs to the one with the deeper shadow.  A vessel is to
+        /// be seen where medium is in it, and no device.
+        std::vector<std::uint8_t> visible;
     };
     std::vector<Mask> devices, regions;
     struct Point {

@@ -128,13 +128,41 @@ void PathRaster::add(const Triangle& t, std::span<const double> values) {
             sum.exits += sign;
             if constexpr (with_values) {
                 const auto v = static_cast<float>(value_0 + depth * (gx * slope_x + gy * slope_y + gz));
-                Moments& moments = moments_[start + x];
-                moments.value_depth += sign * v * d;
-                moments.value += sign * v;
-                moments.depth_2 += sign * d * d;
+                met_.emplace_back(static_cast<std::uint32_t>(start + x), Crossing{d, v, sign});
             }
         }
     }
+}
+
+// By pixel in two passes, as many crossings are met as the surface has layers; then by depth within each.
+void PathRaster::sort_crossings() {
+    first_.assign(sums_.size() + 1, 0);
+    for (const auto& [pixel, crossing] : met_) ++first_[pixel + 1];
+    for (std::size_t i = 0; i < sums_.size(); ++i) first_[i + 1] += first_[i];
+    crossings_.resize(met_.size());
+    for (const auto& [pixel, crossing] : met_) {  // first_ runs along to each pixel's end
+        std::uint32_t& end = first_[pixel];
+        crossings_[end++] = crossing;
+    }
+    // Each now says where the next pixel begins: back by one.
+    for (std::size_t i = sums_.size(); i > 0; --i) first_[i] = first_[i - 1];
+    first_[0] = 0;
+    for (std::size_t i = 0; i < sums_.size(); ++i)
+        std::sort(crossings_.begin() + first_[i], crossings_.begin() + first_[i + 1],
+                  [](const Crossing& a, const Crossing& b) {
+                      return a.depth != b.depth ? a.depth < b.depth : a.exit < b.exit;
+                  });
+}
+
+// Along the depth; on a closed surface as many exits as entries.
+float PathRaster::integral(std::size_t pixel) const {
+    float sum = 0.0F, layers = 0.0F;
+    for (std::size_t k = first_[pixel]; k + 1 < first_[pixel + 1]; ++k) {
+        const Crossing &here = crossings_[k], &next = crossings_[k + 1];
+        layers -= here.exit;
+        if (layers > 0.0F) sum += layers * 0.5F * (here.value + next.value) * (next.depth - here.depth);
+    }
+    return std::max(0.0F, sum);
 }
 
 void PathRaster::draw(const Projection& projection, std::span<const Vec3> vertices, std::span<const Triangle> triangles,
@@ -149,8 +177,9 @@ void PathRaster::draw(const Projection& projection, std::span<const Vec3> vertic
     project(projection, vertices);
     sums_.assign(count, Sum{});
     if (with_values) {
-        moments_.assign(count, Moments{});
+        met_.clear();
         for (const Triangle& t : triangles) add<true>(t, values);
+        sort_crossings();
     } else {
         for (const Triangle& t : triangles) add<false>(t, values);
     }
@@ -170,15 +199,8 @@ void PathRaster::draw(const Projection& projection, std::span<const Vec3> vertic
                 // From depth along the normal to distance along the ray.
                 const double slant = std::sqrt(1.0 + slope_x_[x] * slope_x_[x] + slope_y_[y] * slope_y_[y]);
                 length = static_cast<float>(sum.depth * slant);
-                if (with_values && length > 1e-3F) {
-                    // For one entry (d0, c0) and one exit (d1, c1): sum c d = c1 d1 - c0 d0, sum c = c1 - c0, and the
-                    // mean depth is (d1^2 - d0^2) / 2 (d1 - d0), which together give the trapezoid
-                    // (c0 + c1) / 2 * (d1 - d0) exactly.
-                    const Moments& m = moments_[n];
-                    const float middle = 0.5F * m.depth_2 / sum.depth;
-                    out.contrast_mm_mg_ml.values[n] =
-                        static_cast<float>(slant) * std::max(0.0F, m.value_depth - m.value * middle);
-                }
+                if (with_values && length > 1e-3F)
+                    out.contrast_mm_mg_ml.values[n] = static_cast<float>(slant) * integral(n);
             }
             out.length_mm.values[n] = length;
         }

@@ -2,7 +2,9 @@
 // software rasteriser spends on setting up a triangle of a few pixels is several times what the triangle itself costs.
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/mesh.h"
@@ -18,7 +20,8 @@ namespace cathlab {
 class PathRaster {
 public:
     /// vertices: mm, world, and wholly on the detector's side of the source; values: one a vertex, >= 0, to be
-    /// integrated along the ray (trapezoid between the points of entry and exit), or empty.
+    /// integrated along the ray (trapezoid between each entry and the exit after it, so that of two vessels behind one
+    /// another each has its own), or empty.
     void draw(const Projection& projection, std::span<const Vec3> vertices, std::span<const Triangle> triangles,
               std::span<const double> values, PathLengths& out);
 
@@ -32,18 +35,22 @@ private:
         float depth = 0.0F;  // leaving - entering, along the detector's normal, less a reference
         float exits = 0.0F;  // leaving - entering
     };
-    struct Moments {
-        float value_depth = 0.0F, value = 0.0F, depth_2 = 0.0F;  // the same of v d, v, d^2
+    struct Crossing {
+        float depth, value, exit;  // exit: 1 leaving, -1 entering
     };
 
     template <bool with_values>
     void add(const Triangle& t, std::span<const double> values);
     void project(const Projection& projection, std::span<const Vec3> vertices);
+    void sort_crossings();
+    float integral(std::size_t pixel) const;
 
     std::vector<Corner> corners_;
     std::vector<double> slope_x_, slope_y_;  // of the ray through a column's (row's) centre: mm a mm of depth
     std::vector<Sum> sums_;
-    std::vector<Moments> moments_;
+    std::vector<std::pair<std::uint32_t, Crossing>> met_;  // pixel and crossing, as the triangles come
+    std::vector<Crossing> crossings_;                      // of pixel i: first_[i] to first_[i + 1], by depth
+    std::vector<std::uint32_t> first_;
     double reference_ = 0.0;  // keeps the sums small
     int width_ = 0, height_ = 0;
     bool mirrored_ = false;

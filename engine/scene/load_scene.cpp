@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "beam/view_presets.h"
 #include "core/hash.h"
 #include "scene/scene_table.h"
 
@@ -94,6 +95,12 @@ void check_scene(const SceneSpec& scene) {
     check_heart(scene.heart);
     if (scene.c_arm.sod_mm >= scene.c_arm.sid_mm)
         throw UserError(scene.c_arm.where, "sod_mm (source to isocentre) must be below sid_mm (source to detector)");
+    if (!scene.c_arm.view.empty() && find_view(scene.c_arm.view) == nullptr)
+        throw UserError(scene.c_arm.where, "view: no view '" + scene.c_arm.view + "'" +
+                                               did_you_mean(scene.c_arm.view, view_names()) +
+                                               " There is: " + comma_list(view_names()));
+    if (!scene.c_arm.view.empty() && (scene.c_arm.primary_deg != 0.0 || scene.c_arm.secondary_deg != 0.0))
+        throw UserError(scene.c_arm.where, "has both a view and angles; one of them is wanted");
     const double rate = scene.c_arm.frame_rate;
     if (rate != 7.5 && rate != 15.0 && rate != 30.0)
         throw UserError(scene.c_arm.where, "frame_rate: 7.5, 15 or 30 is wanted");
@@ -148,6 +155,10 @@ SceneSpec load_scene(const std::string& path, const std::vector<std::string>& ov
     read_table(document, scene_table().spec(), &scene, path_resolver(data_root));
     if (scene.name.empty()) scene.name = fs::path(path).stem().string();
     check_scene(scene);
+    if (const ViewPreset* view = find_view(scene.c_arm.view)) {
+        scene.c_arm.primary_deg = view->primary_deg;
+        scene.c_arm.secondary_deg = view->secondary_deg;
+    }
 
     Hash64 hash;
     hash.text(canonical_text(document));

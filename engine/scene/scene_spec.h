@@ -86,6 +86,7 @@ struct SceneDevice {
 
 /// [c_arm]
 struct SceneCArm {
+    std::string view;            ///< name of a preset that sets both angles; "" = as they are given
     double primary_deg = 0.0;    ///< + LAO
     double secondary_deg = 0.0;  ///< + cranial
     double sid_mm = 1050.0;
@@ -93,6 +94,7 @@ struct SceneCArm {
     double field_of_view_mm = 320.0;                ///< side of the square detector field
     NameOrPoint isocentre{"centre", Vec3::Zero()};  ///< a landmark, "centre" (middle of the lumen's box), or a point
     double frame_rate = 15.0;
+    std::string dose = "normal";          ///< of fluoroscopy at the start: "low", "normal" or "high"
     std::string detector = "flat_panel";  ///< or "image_intensifier": of the pictures alone
     SourcePlace where;
 };

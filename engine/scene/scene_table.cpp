@@ -123,6 +123,7 @@ Table<SceneDevice> device_table(const std::string& doc, bool catheter) {
 
 Table<SceneCArm> c_arm_table() {
     return Table<SceneCArm>("the C-arm: angles by DICOM's signs, distances, detector field")
+        .text("view", &SceneCArm::view, "a view by its name in place of the two angles: see `cathlab list views`")
         .number("primary_deg", &SceneCArm::primary_deg, "deg", {-180, 180}, "positive = LAO, at the start")
         .number("secondary_deg", &SceneCArm::secondary_deg, "deg", {-90, 90}, "positive = cranial, at the start")
         .number("sid_mm", &SceneCArm::sid_mm, "mm", {600, 1500}, "source to detector")
@@ -131,6 +132,7 @@ Table<SceneCArm> c_arm_table() {
         .name_or_point("isocentre", &SceneCArm::isocentre, world_mm,
                        "a landmark, 'centre' for the middle of the lumen's box, or a point")
         .number("frame_rate", &SceneCArm::frame_rate, "1/s", {1, 30}, "7.5, 15 or 30 frames a second")
+        .choice("dose", &SceneCArm::dose, {"low", "normal", "high"}, "of fluoroscopy, at the start")
         .choice("detector", &SceneCArm::detector, {"flat_panel", "image_intensifier"},
                 "what makes the picture: no part of the state")
         .place(&SceneCArm::where);

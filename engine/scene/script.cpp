@@ -1,8 +1,10 @@
 #include "scene/script.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
+#include "beam/view_presets.h"
 #include "core/csv.h"
 #include "core/errors.h"
 #include "scene/toml_document.h"
@@ -30,27 +32,54 @@ const ActionInfo& action_of(std::string_view cell, SourcePlace where) {
     if (const ActionInfo* action = find_action(cell)) return *action;
     std::vector<std::string> known;
     for (const ActionInfo& a : action_table()) known.emplace_back(a.name);
+    known.emplace_back("view");
     where.key = "action";
     throw UserError(where, "no action '" + shown(cell) + "'" + did_you_mean(std::string(cell), known) +
                                " There is: " + comma_list(known));
 }
 
+// Actions whose values have names: in their order from 0.
+std::vector<std::string> value_names(std::string_view action) {
+    if (action == "device") return {"wire", "catheter"};
+    if (action == "acquisition") return {"fluoroscopy", "cine", "dsa"};
+    if (action == "fluoroscopy_level") return {"low", "normal", "high"};
+    return {};
+}
+
 double value_of(std::string_view cell, const ActionInfo& action, SourcePlace where) {
     where.key = std::string(action.name);
-    if (action.name == "device" && cell == "wire") return 0.0;
-    if (action.name == "device" && cell == "catheter") return 1.0;
-    const std::string wanted = action.name == "device" ? "wire or catheter"
-                                                       : "a number from " + number_text(action.minimum) + " to " +
-                                                             number_text(action.maximum) +
-                                                             (action.unit == "1" ? "" : " " + std::string(action.unit));
+    const std::vector<std::string> names = value_names(action.name);
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (cell == names[i]) return static_cast<double>(i);
+    std::string wanted = "a number from " + number_text(action.minimum) + " to " + number_text(action.maximum) +
+                         (action.unit == "1" ? "" : " " + std::string(action.unit));
+    if (!names.empty()) {
+        wanted = names.front();
+        for (std::size_t i = 1; i < names.size(); ++i) wanted += (i + 1 < names.size() ? ", " : " or ") + names[i];
+    }
     const double value = number_of(cell, where, wanted);
-    const bool named = action.name != "device" || value == 0.0 || value == 1.0;
+    const bool named = names.empty() || value == std::floor(value);
     if (value < action.minimum || value > action.maximum || !named)
         throw UserError(where, "found " + shown(cell) + "; " + wanted + " is wanted");
     return value;
 }
 
+const ViewPreset& view_of(std::string_view cell, SourcePlace where) {
+    if (const ViewPreset* view = find_view(cell)) return *view;
+    where.key = "view";
+    throw UserError(where, "no view '" + shown(cell) + "'" + did_you_mean(std::string(cell), view_names()) +
+                               " There is: " + comma_list(view_names()));
+}
+
 }  // namespace
+
+Input base_input(const SceneSpec& scene) {
+    Input input;
+    input.primary_angle = scene.c_arm.primary_deg;
+    input.secondary_angle = scene.c_arm.secondary_deg;
+    input.fluoroscopy_level = scene.c_arm.dose == "low" ? 0.0 : scene.c_arm.dose == "high" ? 2.0 : 1.0;
+    return input;
+}
 
 Script::Script() : rows_(action_table().size()) {}
 
@@ -82,9 +111,21 @@ Script Script::parse(const std::string& text, const std::string& file) {
         if (t < out.end_s_)
             throw UserError(time_place,
                             "time runs back: " + shown(cells[0]) + " s after " + number_text(out.end_s_) + " s");
-        const ActionInfo& action = action_of(cells[1], where);
-        out.rows_[static_cast<std::size_t>(&action - action_table().data())].emplace_back(
-            t, value_of(cells[2], action, where));
+        const auto rows_of = [&](const ActionInfo& action) -> auto& {
+            return out.rows_[static_cast<std::size_t>(&action - action_table().data())];
+        };
+        if (cells[1] == "view") {  // both angles at once: a jump, which the C-arm follows at its speed
+            const ViewPreset& view = view_of(cells[2], where);
+            for (const auto& [name, angle] :
+                 {std::pair("primary_angle", view.primary_deg), std::pair("secondary_angle", view.secondary_deg)}) {
+                auto& rows = rows_of(*find_action(name));
+                if (!rows.empty()) rows.emplace_back(t, rows.back().second);
+                rows.emplace_back(t, angle);
+            }
+        } else {
+            const ActionInfo& action = action_of(cells[1], where);
+            rows_of(action).emplace_back(t, value_of(cells[2], action, where));
+        }
         out.end_s_ = t;
     }
     if (!header) throw UserError({file, 0, ""}, "is empty; the header t_s,action,value is wanted first");

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/input.h"
+#include "scene/scene_spec.h"
 
 namespace cathlab {
 
@@ -38,5 +39,8 @@ private:
     std::vector<std::vector<std::pair<double, double>>> rows_;  // one list an action, in the order of action_table()
     double end_s_ = 0.0;
 };
+
+/// What holds until an operator says otherwise: the C-arm's angles and the dose as the scene has them.
+Input base_input(const SceneSpec& scene);
 
 }  // namespace cathlab

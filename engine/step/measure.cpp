@@ -123,6 +123,13 @@ void measure(Parts& p, const Input& /*input*/, const StepSums& sums, Channels& c
         c.secondary_angle_deg = beam.secondary_deg;
         c.table_longitudinal_mm = beam.table_longitudinal_mm;
         c.table_lateral_mm = beam.table_lateral_mm;
+        c.exposures = static_cast<double>(beam.frames);
+        c.exposure_series = static_cast<double>(beam.series);
+        c.acquisition = static_cast<double>(beam.acquisition);
+        c.roadmap = beam.roadmap ? 1.0 : 0.0;
+        c.references = static_cast<double>(beam.references);
+        c.collimator_width = beam.collimator_width;
+        c.collimator_height = beam.collimator_height;
     }
     if (p.contrast) c.contrast_injected_ml = p.contrast_state->injected_ml;
 
@@ -149,9 +156,19 @@ void advance_imaging(Parts& p, const Input& input, double dt) {
         const bool pedal = input.fluoroscopy >= 0.5;
         // The thickness is looked up where it is needed: while the beam is off nothing depends on it.
         const double water_mm = pedal && p.thickness ? p.thickness->water_mm(p.beam->c_arm, pose) : 0.0;
-        advance(*p.beam, *p.beam_state,
-                {input.primary_angle, input.secondary_angle, pedal, input.table_longitudinal, input.table_lateral},
-                water_mm, p.world->step_index - 1, dt);
+        BeamCommand command{input.primary_angle, input.secondary_angle, pedal, input.table_longitudinal,
+                            input.table_lateral};
+        command.acquisition = input.acquisition >= 1.5   ? Acquisition::dsa
+                              : input.acquisition >= 0.5 ? Acquisition::cine
+                                                         : Acquisition::fluoroscopy;
+        command.level = input.fluoroscopy_level >= 1.5   ? FluoroscopyLevel::high
+                        : input.fluoroscopy_level >= 0.5 ? FluoroscopyLevel::normal
+                                                         : FluoroscopyLevel::low;
+        command.collimator_width = input.collimator_width;
+        command.collimator_height = input.collimator_height;
+        command.roadmap = input.roadmap >= 0.5;
+        command.reference = input.reference >= 0.5;
+        advance(*p.beam, *p.beam_state, command, water_mm, p.world->step_index - 1, dt);
     }
     if (p.contrast) {
         p.stage("contrast");

@@ -32,3 +32,15 @@ TEST(Views, TheSpiderIsSeenFromTheLeftAndFromBelow) {
     EXPECT_LT(other.detector.x(), 0.0);
     EXPECT_GT(other.detector.z(), 0.0);
 }
+
+TEST(Views, OneComesAfterAnotherUntilTheFirstAgain) {
+    const ViewPreset* view = &view_after(12.5, 3.0);  // no name
+    EXPECT_EQ(view, &view_presets().front());
+    for (std::size_t i = 1; i < view_presets().size(); ++i) {
+        EXPECT_EQ(view_at(view->primary_deg + 0.2, view->secondary_deg), view);
+        view = &view_after(view->primary_deg, view->secondary_deg);
+        EXPECT_EQ(view, &view_presets()[i]);
+    }
+    EXPECT_EQ(&view_after(view->primary_deg, view->secondary_deg), &view_presets().front());
+    EXPECT_EQ(view_at(12.5, 3.0), nullptr);
+}

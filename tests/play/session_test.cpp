@@ -72,6 +72,81 @@ TEST_F(Trainer, APadAloneGoesFromTheStartToTheResult) {
     EXPECT_EQ(verify(app->result().folder, context).code, 0);
 }
 
+TEST_F(Trainer, TheConsoleIsRecordedSoThatAReplayHasTheSameDoseAndPictures) {
+    start(true, "");
+    key(SDL_SCANCODE_SPACE, true);
+    frames(10);
+    tap(SDL_SCANCODE_X);  // cine
+    EXPECT_EQ(status().channels.acquisition, 1.0);
+    frames(10);
+    tap(SDL_SCANCODE_X);  // DSA
+    EXPECT_EQ(status().channels.acquisition, 2.0);
+    key(SDL_SCANCODE_C, true);
+    frames(20);
+    key(SDL_SCANCODE_C, false);
+    tap(SDL_SCANCODE_R);
+    EXPECT_EQ(status().channels.references, 1.0);
+    EXPECT_TRUE(app->side() == Side::kept);
+    tap(SDL_SCANCODE_X);  // and fluoroscopy again, at low dose, over the roadmap
+    EXPECT_EQ(status().channels.acquisition, 0.0);
+    tap(SDL_SCANCODE_B);
+    tap(SDL_SCANCODE_B);
+    EXPECT_EQ(status().input.fluoroscopy_level, 0.0);
+    tap(SDL_SCANCODE_Q);
+    EXPECT_EQ(status().channels.roadmap, 1.0);
+    key(SDL_SCANCODE_LEFTBRACKET, true);
+    frames(20);
+    key(SDL_SCANCODE_LEFTBRACKET, false);
+    EXPECT_LT(status().channels.collimator_width, 0.9);
+    EXPECT_EQ(status().channels.collimator_height, 1.0);
+    tap(SDL_SCANCODE_N);
+    frames(60);
+    EXPECT_GT(std::abs(status().channels.primary_angle_deg) + std::abs(status().channels.secondary_angle_deg), 1.0);
+    const Channels played = status().channels;
+    EXPECT_GE(played.exposure_series, 4.0);
+    const std::string run = app->run_folder();
+    app.reset();
+    EXPECT_EQ(verify(run, context).code, 0);
+    PlayOptions again = options();
+    again.replay = run;
+    app = std::make_unique<PlayApp>(again, context);
+    for (int i = 0; i < 400 && (app->simulation() == nullptr || !status().over); ++i) frames(1);
+    EXPECT_EQ(status().channels.air_kerma_mgy, played.air_kerma_mgy);
+    EXPECT_EQ(status().channels.dose_area_product_gycm2, played.dose_area_product_gycm2);
+    EXPECT_EQ(status().channels.exposures, played.exposures);
+    EXPECT_EQ(status().channels.contrast_injected_ml, played.contrast_injected_ml);
+    EXPECT_TRUE(app->side() == Side::kept);  // the reference was kept in the replay, too
+}
+
+TEST_F(Trainer, APadChoosesWhatIsExposedAndTheRoadmap) {
+    start(true, "");
+    VirtualPad pad;
+    frames(3);
+    const auto press = [&](SDL_GameControllerButton button) {
+        pad.button(button, true);
+        frames(2);
+        pad.button(button, false);
+        frames(2);
+    };
+    press(SDL_CONTROLLER_BUTTON_A);
+    EXPECT_EQ(status().input.acquisition, 1.0);
+    press(SDL_CONTROLLER_BUTTON_X);
+    EXPECT_EQ(status().input.roadmap, 1.0);
+}
+
+TEST_F(Trainer, AnExamHasNoRoadmapAndSaysSo) {
+    start(false, "");
+    app->setup().difficulty = Difficulty::exam;
+    frames(3);
+    tap(SDL_SCANCODE_RETURN);
+    ASSERT_TRUE(leave(Screen::start, 5));
+    frames(3);
+    ASSERT_TRUE(app->screen() == Screen::play);
+    tap(SDL_SCANCODE_Q);
+    EXPECT_EQ(status().input.roadmap, 0.0);
+    EXPECT_TRUE(heard(*app, "no roadmap"));
+}
+
 TEST_F(Trainer, APadThatIsPulledOutStopsTheDeviceAndSaysSo) {
     start();
     {

@@ -211,5 +211,22 @@ TEST(Frame, LayoutsFillTheirPicture) {
     EXPECT_THROW(renderer.render(f, out), UserError);
 }
 
+TEST(FrameRenderer, AnOpenSurfaceIsToldWithItsPlaceBeforeThePicture) {
+    FrameRenderer renderer(make_gl_target());
+    FrameDescription f;
+    f.width = f.height = 64;
+    f.show_inner_view = false;
+    const TriMesh ball = sphere(Vec3(0, 0, 0), 20, 10);
+    f.lumen.vertices = ball.vertices;
+    f.lumen.triangles = {ball.triangles.begin(), ball.triangles.end() - 1};
+    Image8 out;
+    try {
+        renderer.render(f, out);
+        ADD_FAILURE() << "an open lumen was drawn";
+    } catch (const UserError& error) {
+        EXPECT_NE(std::string(error.what()).find("not closed: 3 open"), std::string::npos) << error.what();
+    }
+}
+
 }  // namespace
 }  // namespace cathlab

@@ -83,6 +83,40 @@ TEST(Labels, TheCameraMatrixPutsAPointWhereTheProjectionDoes) {
     EXPECT_LT((labels.lines[0].pixels[0] - projection.pixel(Vec3(0, 0, -30))).norm(), 1e-9);
 }
 
+TEST(Labels, WhatIsSeenOfAMaskIsWhatThePictureShows) {
+    FrameDescription f = ball_with_wire();
+    LabelSource source = halves(f);
+    FrameLabels labels = label_frame(f, source, 256, 256, Workers());
+    EXPECT_EQ(labels.devices[0].visible, labels.devices[0].inside);
+    EXPECT_EQ(area(labels.regions[0].visible), 0);  // blood without medium has no shadow of its own
+
+    for (const Vec3& v : f.lumen.vertices) f.lumen.contrast_mg_ml.push_back(v.z() < 8 ? 100.0 : 0.0);
+    FrameDevice sleeve;  // along the wire's lower half, of a plastic that is thinner to X-rays than the wire
+    sleeve.name = "sleeve";
+    sleeve.points = {Vec3(0, 0, -30), Vec3(0, 0, 0)};
+    sleeve.radius_mm = {2.0};
+    sleeve.inner_radius_mm = {1.5};
+    sleeve.materials = {"ptfe"};
+    sleeve.material_of = {0};
+    f.devices.push_back(sleeve);
+    labels = label_frame(f, source, 256, 256, Workers());
+    EXPECT_GT(area(labels.regions[0].visible), 0.5 * area(labels.regions[0].inside));
+    EXPECT_LT(area(labels.regions[1].visible), 0.1 * area(labels.regions[1].inside));  // where they meet
+    // The wire is seen through the sleeve and takes its pixels from it.
+    EXPECT_GT(area(labels.devices[0].visible), 0.98 * area(labels.devices[0].inside));
+    EXPECT_LT(area(labels.devices[1].visible), 0.9 * area(labels.devices[1].inside));
+    for (std::size_t i = 0; i < labels.devices[0].inside.size(); ++i) {
+        EXPECT_LE(labels.devices[0].visible[i] + labels.devices[1].visible[i], 1);
+        EXPECT_LE(labels.devices[1].visible[i], labels.devices[1].inside[i]);
+        EXPECT_LE(labels.regions[0].visible[i] + labels.devices[1].inside[i], 1);
+    }
+
+    f.view.open_height = 0.3;  // blades hide the wire's ends, and a key point there
+    labels = label_frame(f, source, 256, 256, Workers());
+    EXPECT_LT(area(labels.devices[0].visible), 0.7 * area(labels.devices[0].inside));
+    EXPECT_EQ(labels.points[0].visibility, 1);
+}
+
 TEST(Labels, FollowAnImageIntensifiersBend) {
     FrameDescription f = ball_with_wire();
     f.exposure.detector = detector_preset("image_intensifier");

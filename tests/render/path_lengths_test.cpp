@@ -161,6 +161,23 @@ TEST(PathRaster, ContrastMediumIsItsConcentrationTimesThePath) {
     }
 }
 
+TEST(PathRaster, OfTwoVesselsBehindOneAnotherEachHasItsOwnMedium) {
+    const CArmView v = view(0, 160);
+    const Vec3 axis = (v.detector_center - v.source).normalized();
+    const TriMesh front = sphere(-50 * axis, 20, 40), back = sphere(50 * axis, 20, 40);
+    std::vector<double> values;  // a steep front in one, nothing in the other
+    for (const Vec3& p : front.vertices) values.push_back(100 + 4 * (p + 50 * axis).dot(axis));
+    const PathLengths alone = by_raster(v, {front}, 128, values);
+    values.insert(values.end(), back.vertices.size(), 0.0);
+    const PathLengths both = by_raster(v, {front, back}, 128, values);
+    double most = 0;
+    for (std::size_t i = 0; i < alone.contrast_mm_mg_ml.values.size(); ++i) {
+        EXPECT_NEAR(both.contrast_mm_mg_ml.values[i], alone.contrast_mm_mg_ml.values[i], 0.05) << i;
+        most = std::max<double>(most, alone.contrast_mm_mg_ml.values[i]);
+    }
+    EXPECT_NEAR(most, 40 * 100, 40);  // through the middle
+}
+
 TEST(PathRaster, ASurfaceFinerThanThePixelsIsClosedAndKeepsItsVolume) {
     const CArmView v = view(-25, 100);
     const TriMesh ball = sphere(Vec3(3, -4, 2), 20, 160);  // 102,000 triangles on some 20,000 pixels

@@ -31,6 +31,25 @@ TEST(Script, ALinearActionGoesStraightFromRowToRow) {
     EXPECT_DOUBLE_EQ(s.at(9.0).distal_bend, 100.0);
 }
 
+TEST(Script, AViewIsBothAnglesAtOnce) {
+    const Script s = Script::parse(header + "1,primary_angle,10\n3,view,spider\n5,view,ap\n", "s.csv");
+    EXPECT_DOUBLE_EQ(s.at(2.9).primary_angle, 10.0);  // no creeping towards it
+    EXPECT_DOUBLE_EQ(s.at(3.0).primary_angle, 45.0);
+    EXPECT_DOUBLE_EQ(s.at(4.0).secondary_angle, -30.0);
+    EXPECT_DOUBLE_EQ(s.at(6.0).primary_angle, 0.0);
+    EXPECT_NE(error_of(header + "1,view,spyder\n").find("spider"), std::string::npos);
+}
+
+TEST(Script, WhatThePedalExposesHasNames) {
+    const Script s =
+        Script::parse(header + "1,acquisition,dsa\n2,acquisition,cine\n2,fluoroscopy_level,low\n", "s.csv");
+    EXPECT_EQ(s.at(1.0).acquisition, 2.0);
+    EXPECT_EQ(s.at(2.0).acquisition, 1.0);
+    EXPECT_EQ(s.at(0.0).fluoroscopy_level, 1.0);
+    EXPECT_EQ(s.at(2.0).fluoroscopy_level, 0.0);
+    EXPECT_NE(error_of(header + "1,acquisition,1.5\n").find("fluoroscopy, cine or dsa"), std::string::npos);
+}
+
 TEST(Script, TwoRowsAtOneTimeAreAJump) {
     const Script s =
         Script::parse(header + "0,distal_bend,0\n1,distal_bend,10\n1,distal_bend,90\n2,distal_bend,90\n", "s.csv");
