@@ -2,19 +2,24 @@
 // material is given, nothing is fitted.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/errors.h"
 #include "explain/rigs.h"
 #include "explain/wall_contact.h"
 #include "softbody/push_rig.h"
+#include "softbody/shell_statics.h"
 
 namespace cathlab {
 namespace {
 
-// Twice the distance at which the calibration compares: a marker stands several of them from the tool, and a model must
-// be solved hundreds of times.
-constexpr double spacing_mm = 4.5;
-constexpr double far_spacing_mm = 9.0;  // of the wall that nothing touches
+// Models are searched on particles so far apart; what that costs is known of the base model, which is solved on finer
+// ones too, and taken off every model.
+constexpr double spacing_mm = 4.0, far_spacing_mm = 9.0;
+constexpr double fine_spacing_mm = 2.5, fine_far_spacing_mm = 6.0;
+
+// Factors kept of every sample's matrix are some MB each.
+constexpr std::size_t most_factors = 400;
 
 constexpr unsigned of_wall = hook_material | hook_membrane | hook_slip;
 
@@ -39,39 +44,52 @@ public:
             pushes_[run].ball_mm.emplace_back(data.find("tool_x")->values[i], data.find("tool_y")->values[i],
                                               data.find("tool_z")->values[i]);
         }
-        PushRig rig = push_rig_of(data.contact, spacing_mm);
-        rig.far_spacing_mm = far_spacing_mm;
         for (std::size_t run = 0; run < pushes_.size(); ++run) {
-            rig.looked_at = pushes_[run].ball_mm;
-            rig.looked_at.push_back(pushes_[run].marker_mm);
-            walls_.emplace_back(rig);
+            walls_.push_back(wall_of(run, spacing_mm, far_spacing_mm));
             pushes_[run].keep_wall = true;
-            plain_.push_back(walls_[run].push(pushes_[run]));
+            plain_.push_back(rest_of(run, walls_[run]));
             pushes_[run].keep_wall = false;
-            if (!plain_.back().at_rest)
-                throw UserError(data.folder + ": the wall of run " + data.run_names[run] +
-                                " comes to no rest under its tool; there is no base model");
+            fine_.push_back(rest_of(run, wall_of(run, fine_spacing_mm, fine_far_spacing_mm)));
         }
-        for (std::size_t run = 0; run < pushes_.size(); ++run) pushes_[run].guess = plain_[run].wall_mm;
     }
 
     bool slow() const override { return true; }
 
-    Columns residual(std::span<const double>, std::span<const EffectTrial> trials) const override {
+    std::unique_ptr<RigMemory> memory() const override {
+        auto out = std::make_unique<Memory>();
+        for (std::size_t run = 0; run < pushes_.size(); ++run) {
+            out->wall.push_back(plain_[run].wall_mm);
+            out->factors.emplace_back(data_.rows() <= most_factors ? pushes_[run].ball_mm.size() : 0);
+        }
+        return out;
+    }
+
+    Columns residual(std::span<const double> base, std::span<const EffectTrial> trials) const override {
+        return residual_near(base, trials, nullptr);
+    }
+
+    Columns residual_near(std::span<const double>, std::span<const EffectTrial> trials,
+                          RigMemory* memory) const override {
         Columns out;
         for (const DataColumn* column : measured_) out.push_back(column->values);
         RigEffects effects(trials);
         const bool walled = effects.uses(of_wall), read = effects.uses(hook_measure);
+        bool at_rest = true;  // a law under which one wall does not come to rest is none: the others are not asked
         for (std::size_t run = 0; run < pushes_.size(); ++run) {
             PushResult own;
-            if (walled) own = pushed(effects, run);
-            const PushResult& result = walled ? own : plain_[run];
+            if (walled && at_rest) own = pushed(effects, run, static_cast<Memory*>(memory));
+            at_rest = at_rest && (!walled || own.at_rest);
             effects.begin_run(static_cast<Index>(run));
             for (std::size_t k = 0; k < pushes_[run].ball_mm.size(); ++k) {
                 const std::size_t row = first_[run] + k;
                 effects.next_row(data_.time_s[row]);
-                Vec3 place = result.marker_mm[k];
-                double force = result.force_mn[k];
+                Vec3 place = fine_[run].marker_mm[k];
+                double force = fine_[run].force_mn[k];
+                if (walled && !at_rest) place.setConstant(std::numeric_limits<double>::quiet_NaN());
+                if (walled && at_rest) {
+                    place += own.marker_mm[k] - plain_[run].marker_mm[k];
+                    force += own.force_mn[k] - plain_[run].force_mn[k];
+                }
                 if (!place.allFinite()) {  // came to no rest: as bad as a wall that does not move
                     place = pushes_[run].marker_mm + Vec3::Constant(no_rest_mm);
                     force = 0.0;
@@ -91,14 +109,35 @@ public:
     }
 
     bool takes_up(const EffectInfo& effect, std::string_view key) const override {
-        // A push at one place stretches the wall every way a little: of the fibres it sees how many there are.
-        return effect.name == "stiffening" && key != "fibre_kpa";
+        // The walls of this rig have no direction: their fibres lie every way alike.
+        return effect.name == "stiffening" && (key == "angle_deg" || key == "dispersion");
     }
 
 private:
     static constexpr double no_rest_mm = 20.0;
 
-    PushResult pushed(RigEffects& effects, std::size_t run) const {
+    struct Memory final : RigMemory {
+        std::vector<std::vector<std::vector<Vec3>>> wall;                 // (runs, samples)
+        std::vector<std::vector<std::shared_ptr<ShellFactors>>> factors;  // (runs, samples) or (runs, 0)
+    };
+
+    PushedWall wall_of(std::size_t run, double spacing, double far_spacing) const {
+        PushRig rig = push_rig_of(data_.contact, spacing);
+        rig.far_spacing_mm = far_spacing;
+        rig.looked_at = pushes_[run].ball_mm;
+        rig.looked_at.push_back(pushes_[run].marker_mm);
+        return PushedWall(rig);
+    }
+
+    PushResult rest_of(std::size_t run, const PushedWall& wall) const {
+        PushResult out = wall.push(pushes_[run]);
+        if (!out.at_rest)
+            throw UserError(data_.folder + ": the wall of run " + data_.run_names[run] +
+                            " comes to no rest under its tool; there is no base model");
+        return out;
+    }
+
+    PushResult pushed(RigEffects& effects, std::size_t run, Memory* memory) const {
         effects.begin_run(static_cast<Index>(run));
         effects.points(walls_[run].triangles());
         PushedLaw law;
@@ -109,7 +148,7 @@ private:
             law.membrane = [&](const MembraneMaterial& material, MembranePoint& point) {
                 effects.membrane(material, law.fibres, point);
             };
-            law.remember = [&](const MembranePoint& point) { effects.remember(point); };
+            if (effects.remembers()) law.remember = [&](const MembranePoint& point) { effects.remember(point); };
         }
         if (effects.uses(hook_slip)) {
             const auto held = [](std::size_t i, const Vec3& traction) {
@@ -127,13 +166,25 @@ private:
                 effects.remember_slip(held(i, traction));
             };
         }
-        return walls_[run].push(pushes_[run], law);
+        Push push = pushes_[run];
+        push.guess = plain_[run].wall_mm;
+        if (memory == nullptr) return walls_[run].push(push, law);
+        push.keep_wall = true;
+        push.guess = memory->wall[run];
+        push.factors = memory->factors[run];
+        PushResult out = walls_[run].push(push, law);
+        if (out.at_rest)
+            memory->wall[run] = std::move(out.wall_mm);
+        else
+            memory->wall[run] = plain_[run].wall_mm;
+        return out;
     }
 
     std::vector<PushedWall> walls_;   // (runs) dense where each is pushed
     std::vector<Push> pushes_;        // (runs)
     std::vector<std::size_t> first_;  // (runs) row
-    std::vector<PushResult> plain_;   // (runs) of the base model
+    std::vector<PushResult> plain_;   // (runs) of the base model on them
+    std::vector<PushResult> fine_;    // (runs) of the base model on finer ones
 };
 
 }  // namespace

@@ -127,6 +127,10 @@ double Fitter::cost_of(const FittedModel& model) const {
 }
 
 void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
+    refit(model, iterations, base_too, rig_.memory().get());
+}
+
+void Fitter::refit(FittedModel& model, int iterations, bool base_too, RigMemory* memory) const {
     const Split& split = rig_.split();
     std::vector<Bound> base = rig_.bounds();
     if (!base_too)
@@ -173,7 +177,7 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
         }
     }
     if (problem.bounds.empty()) {
-        model.residual = rig_.residual(model.base, model.effects);
+        model.residual = rig_.residual_near(model.base, model.effects, memory);
         model.train_cost = cost_of(model);
         return;
     }
@@ -201,7 +205,7 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
     FittedModel trial = model;
     problem.residual = [&](std::span<const double> x, std::span<double> out) {
         unpack(x, trial);
-        const Columns left = rig_.residual(trial.base, trial.effects);
+        const Columns left = rig_.residual_near(trial.base, trial.effects, memory);
         std::size_t at = 0;
         for (std::size_t c = 0; c < left.size(); ++c)
             for (std::size_t i = 0; i < left[c].size(); ++i)
@@ -212,7 +216,8 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
     };
     LeastSquaresOptions options;
     options.max_iterations = iterations;
-    options.value_tolerance = 1e-5;
+    options.value_tolerance = rig_.slow() ? 1e-3 : 1e-5;
+    if (rig_.slow()) options.step = 3e-3;  // a wall at rest is known to a tolerance
     const Result found = minimise_squares(problem, options);
     unpack(found.best, model);
     for (EffectTrial& fitted : model.effects)
@@ -221,7 +226,7 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
                 fitted.values[k] -= std::floor(fitted.values[k]);
                 for (std::vector<double>& own : fitted.own) own[k] = fitted.values[k];
             }
-    model.residual = rig_.residual(model.base, model.effects);
+    model.residual = rig_.residual_near(model.base, model.effects, memory);
     model.train_cost = cost_of(model);
 }
 
@@ -400,12 +405,13 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
     std::vector<FittedModel> tried[2];
     const std::vector<double> usual = defaults(effect);
     const auto better = [](const FittedModel& a, const FittedModel& b) { return a.train_cost < b.train_cost; };
+    const std::unique_ptr<RigMemory> memory = rig_.memory();
     for (const std::vector<double>& values : starts(from, effect)) {
         bool back = false;
         for (std::size_t k = 0; k < values.size(); ++k)
             back = back || (is_direction(effect.parameters[k]) && values[k] != usual[k]);
         FittedModel model = beside(from, turned(from, {&effect, values}));
-        model.residual = rig_.residual(model.base, model.effects);
+        model.residual = rig_.residual_near(model.base, model.effects, memory.get());
         model.train_cost = cost_of(model);
         std::vector<FittedModel>& best = tried[back ? 1 : 0];
         // The base numbers have not moved yet, which favours shapes that change little: of each shape one is searched.
@@ -438,7 +444,7 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
             iterations = 8;
         }
         for (FittedModel& model : way) {
-            refit(model, iterations, base_too);
+            refit(model, iterations, base_too, memory.get());
             if (model.train_cost < best.train_cost) best = std::move(model);
         }
     }

@@ -42,6 +42,7 @@ public:
 
     /// Goes on from where the model is; base_too = false holds the base numbers.
     void refit(FittedModel& model, int iterations, bool base_too = true) const;
+    void refit(FittedModel& model, int iterations, bool base_too, RigMemory* memory) const;
 
     const Rig& rig() const { return rig_; }
 

@@ -17,6 +17,17 @@ const std::array<Vec3, 1> support_place{Vec3::Zero()};
 const std::array<double, 1> support_mass{1e-6};
 const std::array<std::uint8_t, 1> support_held{1};
 
+/// Counts what a state holds.
+class Count final : public Archive {
+public:
+    std::size_t found = 0;
+
+private:
+    void numbers(std::string_view, double*, std::size_t size) override { found += size; }
+    void numbers(std::string_view, float*, std::size_t size) override { found += size; }
+    void numbers(std::string_view, std::int64_t*, std::size_t size) override { found += size; }
+};
+
 }  // namespace
 
 std::size_t phase_place(const EffectInfo& effect) {
@@ -112,6 +123,12 @@ void RigEffects::membrane(const MembraneMaterial& material, const Fibres& fibres
 
 void RigEffects::remember(const MembranePoint& point) {
     for (Effect* effect : of_membrane_) effect->remember(context_, point);
+}
+
+bool RigEffects::remembers() {
+    Count count;
+    for (Effect* effect : of_membrane_) effect->visit(count);
+    return count.found > 0;
 }
 
 void RigEffects::slip(HeldPoint& held) {

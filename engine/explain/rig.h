@@ -35,6 +35,13 @@ std::size_t phase_place(const EffectInfo& effect);
 
 using NamedNumbers = std::vector<std::pair<std::string, double>>;
 
+/// What a rig leaves from one model to the next one that is near it, so that it is found sooner.  One a search: its
+/// models come one after another.
+class RigMemory {
+public:
+    virtual ~RigMemory() = default;
+};
+
 /// Const after construction; its functions may be called from several threads.
 class Rig {
 public:
@@ -55,6 +62,13 @@ public:
 
     /// Measured less modelled, with these base numbers and effects; NaN where nothing was measured.
     virtual Columns residual(std::span<const double> base, std::span<const EffectTrial> effects) const = 0;
+
+    /// The same to the rig's own tolerance, beginning at what the last model of `memory` left.
+    virtual std::unique_ptr<RigMemory> memory() const { return nullptr; }
+    virtual Columns residual_near(std::span<const double> base, std::span<const EffectTrial> effects,
+                                  RigMemory* /*memory*/) const {
+        return residual(base, effects);
+    }
 
     /// The base model's numbers, the linear ones too, with names.
     virtual NamedNumbers parameters(std::span<const double> base, std::span<const EffectTrial> effects) const = 0;

@@ -37,6 +37,7 @@ public:
     double surroundings();  ///< kPa/mm
     void membrane(const MembraneMaterial& material, const Fibres& fibres, MembranePoint& point);
     void remember(const MembranePoint& point);
+    bool remembers();  ///< whether any effect of the membrane keeps something of it from row to row
     void slip(HeldPoint& held);
     void remember_slip(const HeldPoint& held);
 

@@ -87,6 +87,8 @@ public:
             for (int k = 0; k < 3; ++k) corner[static_cast<std::size_t>(k)] = x[at(t.corner[k])];
             if ((corner[0] - centre_).norm() > radius_ + near_) continue;
             const double bed = bed_ * t.area_mm2 / static_cast<double>(points_.size());
+            std::array<Mat3, 6> block;  // corners 0 0, 1 0, 1 1, 2 0, 2 1, 2 2
+            bool touched = false;
             for (const Vec3& w : points_) {
                 const Vec3 off = w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2] - centre_;
                 const double distance = off.norm(), depth = radius_ - distance;
@@ -94,17 +96,24 @@ public:
                 const Vec3 normal = off / distance, push = bed * depth * normal;
                 potential += 0.5 * bed * depth * depth;
                 total += push;
-                const Mat3 block = bed * normal * normal.transpose();
-                for (int i = 0; i < 3; ++i) {
+                if (!touched) block.fill(Mat3::Zero());
+                touched = true;
+                const Mat3 stiff = bed * normal * normal.transpose();
+                for (int i = 0, at_block = 0; i < 3; ++i) {
                     force[at(t.corner[i])] += w[i] * push;
-                    for (int j = 0; j < 3; ++j)
-                        for (int r = 0; r < 3; ++r)
-                            for (int c = 0; c < 3; ++c)
-                                stiffness.emplace_back(static_cast<int>(3 * t.corner[i] + r),
-                                                       static_cast<int>(3 * t.corner[j] + c),
-                                                       w[i] * w[j] * block(r, c));
+                    for (int j = 0; j <= i; ++j, ++at_block)
+                        block[static_cast<std::size_t>(at_block)] += w[i] * w[j] * stiff;
                 }
             }
+            if (!touched) continue;
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j)
+                    for (int r = 0; r < 3; ++r)
+                        for (int c = 0; c < 3; ++c)
+                            stiffness.emplace_back(
+                                static_cast<int>(3 * t.corner[i] + r), static_cast<int>(3 * t.corner[j] + c),
+                                block[static_cast<std::size_t>(std::max(i, j) * (std::max(i, j) + 1) / 2 +
+                                                               std::min(i, j))](r, c));
         }
         return potential;
     }
@@ -245,47 +254,84 @@ PushResult PushedWall::push(const Push& push, const std::function<bool()>& go_on
 /// One place of the ball: the wall at rest there, with what effects make of it.
 class PushedWall::Sample {
 public:
-    Sample(const PushedWall& wall, const PushedLaw& law) : wall_(wall), law_(law), soft_(wall.shell_) {
+    Sample(const PushedWall& wall, const PushedLaw& law) : wall_(wall), law_(law) {
         slipped_.assign(wall.rest_.size(), Vec3::Zero());
-        if (law.membrane) more_.assign(wall.shell_.triangles.size(), Vec3::Zero());
+        rest_.force_tolerance_mn = force_tolerance_mn;
+        rest_.most_iterations = most_iterations;
+        rest_.fibres = law.fibres;
+        rest_.factors = &factors_;
+        if (law.membrane) rest_.most_iterations = most_with_a_law;
+        if (law.membrane)
+            rest_.law = [this](std::size_t k, const Vec3& c) {
+                MembranePoint point = point_of(k, c);
+                law_.membrane(material_of(k), point);
+                return point.stress;
+            };
     }
 
+    /// Searches use these, or their own where there are none.
+    void use(ShellFactors* factors) { rest_.factors = factors != nullptr ? factors : &factors_; }
+
+    /// The way of particle i, from a guess: held ones go along as far as they slip.
+    void go(std::size_t i, const Vec3& way, std::vector<Vec3>& x) {
+        if (!wall_.fixed_[i]) {
+            x[i] += way;
+        } else if (law_.slip) {
+            slipped_[i] += way;
+            x[i] = wall_.rest_[i] + slipped_[i];
+        }
+    }
+
+    /// As settle(); where that finds no rest, the ball takes the way from `before` in small parts.
+    bool solve(const Vec3& before, const Vec3& centre, const std::vector<Vec3>& from, std::vector<Vec3>& x,
+               Vec3& total) {
+        bool found = settle(centre, x, total);
+        for (int tries = 0, count = 4; !found && tries < 1; ++tries, count *= 4) {
+            x = from;
+            for (std::size_t i = 0; i < x.size(); ++i)
+                if (wall_.fixed_[i]) slipped_[i] = x[i] - wall_.rest_[i];
+            rest_.factors->usable = false;
+            found = true;
+            for (int k = 1; k <= count && found; ++k)
+                found = settle(before + (centre - before) * (static_cast<double>(k) / count), x, total);
+        }
+        if (found) keep(x);
+        return found;
+    }
+
+private:
+    static constexpr int most_rounds = 12;
+    static constexpr int most_iterations = 200, most_with_a_law = 60;
+    static constexpr double still_mm = 4e-3;
+
     /// Moves x to rest; total: the ball's force.
-    bool solve(const Vec3& centre, std::vector<Vec3>& x, Vec3& total) {
+    bool settle(const Vec3& centre, std::vector<Vec3>& x, Vec3& total) {
         const Ball ball(wall_.shell_, centre, wall_.ball_radius_mm_, 4.0 * wall_.spacing_mm_, wall_.bed_kpa_per_mm_);
         const ShellLoad load = [&](std::span<const Vec3> at_x, std::span<Vec3> force,
                                    std::vector<Eigen::Triplet<double>>& stiffness) {
             return ball(at_x, force, stiffness, total) + surround(at_x, force, stiffness);
         };
-        const bool again = law_.membrane || law_.slip;
         for (int round = 0;; ++round) {
-            if (law_.membrane) ask(x);
-            const std::vector<Vec3> before = x;
-            if (!shell_equilibrium(soft_, wall_.fixed_, load, x,
-                                   {.force_tolerance_mn = force_tolerance_mn,
-                                    .fibres = law_.fibres,
-                                    .more_stress = more_,
-                                    .factors = &factors_}))
-                return false;
-            double moved = 0.0;
-            for (std::size_t i = 0; i < x.size(); ++i) moved = std::max(moved, (x[i] - before[i]).norm());
-            if (law_.slip) moved = std::max(moved, let_slip(x));
-            if (!again || round >= most_rounds || (round > 0 && moved < still_mm)) break;
+            if (!shell_equilibrium(wall_.shell_, wall_.fixed_, load, x, rest_)) return false;
+            if (!law_.slip) break;
+            const double moved = let_slip(x);
+            if (round >= most_rounds || moved < still_mm) break;
         }
-        if (law_.membrane && law_.remember)
-            each_point(x, [&](MembranePoint& p, const MembraneMaterial& m) {
-                law_.membrane(m, p);
-                law_.remember(p);
-            });
-        if (law_.slip && law_.remember_slip)
-            for (std::size_t i = 0; i < x.size(); ++i)
-                if (wall_.fixed_[i]) law_.remember_slip(i, traction(i));
         return true;
     }
 
-private:
-    static constexpr int most_rounds = 12;
-    static constexpr double still_mm = 4e-3;
+    void keep(const std::vector<Vec3>& x) {
+        if (law_.membrane && law_.remember)
+            for (std::size_t k = 0; k < wall_.shell_.triangles.size(); ++k) {
+                const Eigen::Matrix2d e = shell_strain(wall_.shell_.triangles[k], x);
+                MembranePoint point = point_of(k, Vec3(1.0 + 2.0 * e(0, 0), 1.0 + 2.0 * e(1, 1), 2.0 * e(0, 1)));
+                law_.membrane(material_of(k), point);
+                law_.remember(point);
+            }
+        if (law_.slip && law_.remember_slip)
+            for (std::size_t i = 0; i < x.size(); ++i)
+                if (wall_.fixed_[i]) law_.remember_slip(i, traction(i));
+    }
 
     double surround(std::span<const Vec3> x, std::span<Vec3> force,
                     std::vector<Eigen::Triplet<double>>& stiffness) const {
@@ -302,41 +348,15 @@ private:
         return potential;
     }
 
-    template <class F>
-    void each_point(const std::vector<Vec3>& x, F&& f) const {
-        for (std::size_t k = 0; k < wall_.shell_.triangles.size(); ++k) {
-            const ShellTriangle& t = wall_.shell_.triangles[k];
-            const Eigen::Matrix2d e = shell_strain(t, x);
-            MembranePoint point;
-            point.index = k;
-            point.c = Vec3(1.0 + 2.0 * e(0, 0), 1.0 + 2.0 * e(1, 1), 2.0 * e(0, 1));
-            f(point, MembraneMaterial{t.mu_kpa, t.thinning, t.round});
-        }
+    static MembranePoint point_of(std::size_t k, const Vec3& c) {
+        MembranePoint point;
+        point.index = k;
+        point.c = c;
+        return point;
     }
-
-    /// The stress that the shell's own law, so many times as stiff, lacks of what the effects say at x.
-    void ask(const std::vector<Vec3>& x) {
-        double most = 1.0;
-        std::vector<Vec3> elastic(more_.size());
-        each_point(x, [&](MembranePoint& p, const MembraneMaterial& m) {
-            MembranePoint own = p;
-            ask_elastic_law(m, law_.fibres, own);
-            elastic[p.index] = own.stress;
-            law_.membrane(m, p);
-            more_[p.index] = p.stress;
-            most = std::max(most, p.at_once);
-        });
-        // A law stiffer than the one that is solved for would be overshot from round to round.
-        if (most != times_) {
-            for (std::size_t k = 0; k < soft_.triangles.size(); ++k)
-                soft_.triangles[k].mu_kpa = most * wall_.shell_.triangles[k].mu_kpa;
-            times_ = most;
-        }
-        each_point(x, [&](MembranePoint& p, const MembraneMaterial& m) {
-            MembranePoint stiff = p;
-            ask_elastic_law({times_ * m.mu_kpa, m.thinning, m.round}, law_.fibres, stiff);
-            more_[p.index] -= stiff.stress;
-        });
+    MembraneMaterial material_of(std::size_t k) const {
+        const ShellTriangle& t = wall_.shell_.triangles[k];
+        return {t.mu_kpa, t.thinning, t.round};
     }
 
     Vec3 traction(std::size_t i) const { return pull_[i] / (wall_.thickness_mm_ * std::sqrt(wall_.area_mm2_[i])); }
@@ -344,7 +364,10 @@ private:
     /// What holds the wall goes towards where its law says, as far as is stable; how far it still has to go.
     double let_slip(std::vector<Vec3>& x) {
         pull_.assign(x.size(), Vec3::Zero());
-        add_shell_forces(soft_, x, pull_, law_.fibres);
+        if (rest_.law)
+            add_shell_forces(wall_.shell_, x, pull_, rest_.law);
+        else
+            add_shell_forces(wall_.shell_, x, pull_, law_.fibres);
         double far = 0.0;
         for (std::size_t i = 0; i < x.size(); ++i) {
             if (!wall_.fixed_[i]) continue;
@@ -363,10 +386,9 @@ private:
 
     const PushedWall& wall_;
     const PushedLaw& law_;
-    ShellModel soft_;
     ShellFactors factors_;
-    double times_ = 1.0;
-    std::vector<Vec3> more_, slipped_, pull_;
+    ShellRest rest_;
+    std::vector<Vec3> slipped_, pull_;
 };
 
 PushResult PushedWall::push(const Push& push, const PushedLaw& law, const std::function<bool()>& go_on) const {
@@ -385,6 +407,7 @@ PushResult PushedWall::push(const Push& push, const PushedLaw& law, const std::f
     std::vector<Vec3> x = rest_;
     Sample sample(*this, law);
     const bool remembers = law.remember || law.remember_slip;
+    std::size_t last = 0;  // sample that was searched for
     for (std::size_t k = 0; k < samples; ++k) {
         // An elastic wall without friction does not remember the way: unloading is loading once more.
         const auto met = std::find_if(push.ball_mm.begin(), push.ball_mm.begin() + static_cast<std::ptrdiff_t>(k),
@@ -397,16 +420,21 @@ PushResult PushedWall::push(const Push& push, const PushedLaw& law, const std::f
             if (push.keep_wall) out.wall_mm.push_back(out.wall_mm[known]);
             continue;
         }
+        const std::vector<Vec3> before = x;
         if (k < push.guess.size()) {  // the way that the guess takes, from where the wall is
-            const std::vector<Vec3>& from = k > 0 ? push.guess[k - 1] : rest_;
-            for (std::size_t i = 0; i < x.size(); ++i)
-                if (!fixed_[i]) x[i] += push.guess[k][i] - from[i];
+            const std::vector<Vec3>& from = k > 0 ? push.guess[last] : rest_;
+            for (std::size_t i = 0; i < x.size(); ++i) sample.go(i, push.guess[k][i] - from[i], x);
+        }
+        if (k < push.factors.size()) {
+            if (!push.factors[k]) push.factors[k] = std::make_shared<ShellFactors>();
+            sample.use(push.factors[k].get());
         }
         Vec3 total = Vec3::Zero();
-        if ((go_on && !go_on()) || !sample.solve(push.ball_mm[k], x, total)) {
+        if ((go_on && !go_on()) || !sample.solve(push.ball_mm[last], push.ball_mm[k], before, x, total)) {
             out.at_rest = false;
             return out;
         }
+        last = k;
         if (push.keep_wall) out.wall_mm.push_back(x);
         out.marker_mm[k] = marker.place(x);
         out.force_mn[k] = total.dot(along);

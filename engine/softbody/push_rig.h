@@ -7,6 +7,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,8 @@
 #include "softbody/shell.h"
 
 namespace cathlab {
+
+struct ShellFactors;
 
 /// Where the wall is held: within radius_mm of center and within half_thickness_mm of the plane through it.
 struct HeldDisc {
@@ -43,6 +46,9 @@ struct Push {
     bool keep_wall = false;  ///< PushResult::wall_mm is wanted
     /// (samples) or empty: where the wall's particles are thought to be, each sample; the search begins beside them.
     std::span<const std::vector<Vec3>> guess = {};
+    /// (samples) or empty: what a push along the same places with nearly the same law left of its searches; null ones
+    /// are made.
+    std::span<std::shared_ptr<ShellFactors>> factors = {};
 };
 
 struct PushResult {
@@ -59,7 +65,7 @@ struct PushedLaw {
     Fibres fibres = {};
     double support_kpa_per_mm = 0.0;  ///< an elastic foundation round the wall
     std::function<void(const MembraneMaterial&, MembranePoint&)> membrane;
-    std::function<void(const MembranePoint&)> remember;
+    std::function<void(const MembranePoint&)> remember;  ///< empty = the law keeps nothing from sample to sample
     /// How far what holds the wall gives way under a traction (kPa of the section) at held particle i, mm.
     std::function<Vec3(std::size_t i, const Vec3& traction)> slip;
     std::function<void(std::size_t i, const Vec3& traction)> remember_slip;
@@ -74,8 +80,8 @@ public:
     /// Samples are solved in order, each from the one before; a place of the ball met before is taken from there.
     /// go_on: asked before every sample; false ends the push as if it had not come to rest.
     PushResult push(const Push& push, const std::function<bool()>& go_on = {}) const;
-    /// The same with a law of effects: within a sample the wall is solved anew until what they make of its stress and
-    /// of what holds it no longer changes.
+    /// The same with a law of effects: it is asked within the search for rest; what holds the wall is let slip between
+    /// searches until it no longer moves.
     PushResult push(const Push& push, const PushedLaw& law, const std::function<bool()>& go_on = {}) const;
     std::size_t triangles() const { return shell_.triangles.size(); }
 

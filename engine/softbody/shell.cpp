@@ -281,6 +281,81 @@ ShellModel build_shell(std::span<const Vec3> rest, std::span<const Triangle> tri
     return model;
 }
 
+namespace {
+
+void add_membrane_force(const ShellTriangle& t, const Now& now, const Matrix2d& stress, std::span<Vec3> force) {
+    const Mat3 on_corner = -t.area_mm2 * t.thickness_mm * now.gradient * stress * corner_gradients(t);
+    for (int c = 0; c < 3; ++c) force[at(t.corner[c])] += on_corner.col(c);
+}
+
+void add_bending_force(const ShellTriangle& t, const Now& now, std::span<const Vec3> x, std::span<Vec3> force) {
+    const Matrix23 g = corner_gradients(t);
+    const Mat3 b = second_of(t, x);
+    const Vec3 moment = t.area_mm2 * (bending_matrix(t) * (b.transpose() * now.normal - t.rest_curvature));
+    // The normal turns with the triangle: dn = - sum over g of (n . da_g) a^g.
+    const Vector2d turned = (now.gradient * now.c_inverse).transpose() * (b * moment);
+    for (int c = 0; c < 3; ++c) force[at(t.corner[c])] += g.col(c).dot(turned) * now.normal;
+    for (std::size_t j = 0; j < t.patch.size(); ++j) force[at(t.patch[j])] -= t.second[j].dot(moment) * now.normal;
+}
+
+/// slope(dC) = dS.
+template <class Slope, class Add>
+void add_stiffness(const ShellTriangle& t, const Now& now, const Matrix2d& stress, const Slope& slope, const Add& add) {
+    const Eigen::SelfAdjointEigenSolver<Matrix2d> axes(stress);
+    const Matrix2d pulled =
+        axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.eigenvectors().transpose();
+    const Matrix23 g = corner_gradients(t);
+    const double size = t.area_mm2 * t.thickness_mm;
+    for (int j = 0; j < 3; ++j) {
+        std::array<Mat3, 3> block;
+        for (int axis = 0; axis < 3; ++axis) {
+            Matrix32 change = Matrix32::Zero();
+            change.row(axis) = g.col(j).transpose();
+            const Matrix2d dc = change.transpose() * now.gradient + now.gradient.transpose() * change;
+            const Mat3 column = size * (change * pulled + now.gradient * slope(dc)) * g;  // one column a corner
+            for (int i = 0; i < 3; ++i) block[static_cast<std::size_t>(i)].col(axis) = column.col(i);
+        }
+        for (int i = 0; i < 3; ++i) add(t.corner[i], t.corner[j], block[static_cast<std::size_t>(i)]);
+    }
+    const Mat3 bending = t.area_mm2 * bending_matrix(t);
+    const Mat3 across = now.normal * now.normal.transpose();
+    for (std::size_t i = 0; i < t.patch.size(); ++i)
+        for (std::size_t j = 0; j < t.patch.size(); ++j)
+            add(t.patch[i], t.patch[j], t.second[i].dot(bending * t.second[j]) * across);
+}
+
+template <class Add>
+void each_block(const ShellModel& model, std::span<const Vec3> x, const Fibres& fibres, const Add& add) {
+    for (const ShellTriangle& t : model.triangles) {
+        const Now now(t, x);
+        const double y = now.thinner;
+        const Stretched fibre(t, fibres, now.c);
+        Matrix2d stress = t.mu_kpa * (Matrix2d::Identity() - y * now.c_inverse);
+        if (fibres.any()) stress += fibre.stress();
+        const auto slope = [&](const Matrix2d& dc) {
+            Matrix2d ds =
+                t.mu_kpa * y *
+                (t.thinning * (now.c_inverse * dc).trace() * now.c_inverse + now.c_inverse * dc * now.c_inverse);
+            for (int k = 0; fibres.any() && k < 2; ++k)
+                ds += 2.0 * fibre.tension[k].slope * fibre.direction[k].cwiseProduct(dc).sum() * fibre.direction[k];
+            return ds;
+        };
+        add_stiffness(t, now, stress, slope, add);
+    }
+}
+
+Vec3 components(const Matrix2d& c) {
+    return {c(0, 0), c(1, 1), c(0, 1)};
+}
+
+Matrix2d tensor(const Vec3& s) {
+    Matrix2d out;
+    out << s[0], s[2], s[2], s[1];
+    return out;
+}
+
+}  // namespace
+
 Eigen::Matrix2d shell_strain(const ShellTriangle& triangle, std::span<const Vec3> x) {
     return 0.5 * (Now(triangle, x).c - Matrix2d::Identity());
 }
@@ -315,53 +390,61 @@ void add_shell_forces(const ShellModel& model, std::span<const Vec3> x, std::spa
     }
 }
 
+void add_shell_forces(const ShellModel& model, std::span<const Vec3> x, std::span<Vec3> force, const ShellLaw& law) {
+    for (std::size_t k = 0; k < model.triangles.size(); ++k) {
+        const ShellTriangle& t = model.triangles[k];
+        const Now now(t, x);
+        add_membrane_force(t, now, tensor(law(k, components(now.c))), force);
+        add_bending_force(t, now, x, force);
+    }
+}
+
 Eigen::SparseMatrix<double> shell_stiffness(const ShellModel& model, std::span<const Vec3> x, const Fibres& fibres) {
     std::vector<Eigen::Triplet<double>> entries;
-    const auto add = [&](Index i, Index j, const Mat3& block) {
+    each_block(model, x, fibres, [&](Index i, Index j, const Mat3& block) {
         if (i < j) return;
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 3; ++c)
                 if (i > j || r >= c)
                     entries.emplace_back(static_cast<int>(3 * i + r), static_cast<int>(3 * j + c), block(r, c));
-    };
-    for (const ShellTriangle& t : model.triangles) {
-        const Now now(t, x);
-        const double y = now.thinner;
-        const Stretched fibre(t, fibres, now.c);
-        Matrix2d stress = t.mu_kpa * (Matrix2d::Identity() - y * now.c_inverse);
-        if (fibres.any()) stress += fibre.stress();
-        const Eigen::SelfAdjointEigenSolver<Matrix2d> axes(stress);
-        const Matrix2d pulled =
-            axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.eigenvectors().transpose();
-        const Matrix23 g = corner_gradients(t);
-        const double size = t.area_mm2 * t.thickness_mm;
-        for (int j = 0; j < 3; ++j)
-            for (int axis = 0; axis < 3; ++axis) {
-                Matrix32 change = Matrix32::Zero();
-                change.row(axis) = g.col(j).transpose();
-                const Matrix2d dc = change.transpose() * now.gradient + now.gradient.transpose() * change;
-                Matrix2d ds =
-                    t.mu_kpa * y *
-                    (t.thinning * (now.c_inverse * dc).trace() * now.c_inverse + now.c_inverse * dc * now.c_inverse);
-                for (int k = 0; fibres.any() && k < 2; ++k)
-                    ds += 2.0 * fibre.tension[k].slope * fibre.direction[k].cwiseProduct(dc).sum() * fibre.direction[k];
-                const Mat3 column = size * (change * pulled + now.gradient * ds) * g;  // one column a corner
-                for (int i = 0; i < 3; ++i) {
-                    Mat3 block = Mat3::Zero();
-                    block.col(axis) = column.col(i);
-                    add(t.corner[i], t.corner[j], block);
-                }
-            }
-        const Mat3 bending = t.area_mm2 * bending_matrix(t);
-        const Mat3 across = now.normal * now.normal.transpose();
-        for (std::size_t i = 0; i < t.patch.size(); ++i)
-            for (std::size_t j = 0; j < t.patch.size(); ++j)
-                add(t.patch[i], t.patch[j], t.second[i].dot(bending * t.second[j]) * across);
-    }
+    });
     const auto n = static_cast<Eigen::Index>(3 * model.particles);
     Eigen::SparseMatrix<double> k(n, n);
     k.setFromTriplets(entries.begin(), entries.end());
     return k;
+}
+
+void shell_stiffness_blocks(const ShellModel& model, std::span<const Vec3> x, const Fibres& fibres,
+                            const ShellBlocks& add) {
+    each_block(model, x, fibres, [&](Index i, Index j, const Mat3& block) {
+        if (i >= j) add(i, j, block);
+    });
+}
+
+void shell_stiffness_blocks(const ShellModel& model, std::span<const Vec3> x, const ShellLaw& law,
+                            const ShellBlocks& add) {
+    constexpr double difference = 1e-6;
+    constexpr double trace = 1e-3;  // of mu
+    for (std::size_t k = 0; k < model.triangles.size(); ++k) {
+        const ShellTriangle& t = model.triangles[k];
+        const Now now(t, x);
+        const Vec3 c = components(now.c), stress = law(k, c);
+        Mat3 slope;  // of S by E 11, 22, 2 E12
+        for (int axis = 0; axis < 3; ++axis) {
+            Vec3 moved = c;
+            moved[axis] += difference;
+            slope.col(axis) = (law(k, moved) - stress) * ((axis < 2 ? 2.0 : 1.0) / difference);
+        }
+        const Eigen::SelfAdjointEigenSolver<Mat3> axes(0.5 * (slope + slope.transpose()));
+        const Mat3 definite = axes.eigenvectors() * axes.eigenvalues().cwiseMax(trace * t.mu_kpa).asDiagonal() *
+                              axes.eigenvectors().transpose();
+        add_stiffness(
+            t, now, tensor(stress),
+            [&](const Matrix2d& dc) { return tensor(definite * Vec3(0.5 * dc(0, 0), 0.5 * dc(1, 1), dc(0, 1))); },
+            [&](Index i, Index j, const Mat3& block) {
+                if (i >= j) add(i, j, block);
+            });
+    }
 }
 
 }  // namespace cathlab

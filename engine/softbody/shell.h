@@ -16,6 +16,7 @@
 
 #include <Eigen/Sparse>
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -58,17 +59,34 @@ struct ShellModel {
 ShellModel build_shell(std::span<const Vec3> rest, std::span<const Triangle> triangles,
                        std::span<const ShellMaterial> material, std::span<const Vec3> along = {});
 
+/// A law in place of the membrane's own: second Piola-Kirchhoff stress of triangle k, kPa, at C (both 11, 22, 12, in
+/// the triangle's frame).  It says all of it, fibres too.
+using ShellLaw = std::function<Vec3(std::size_t k, const Vec3& c)>;
+
 /// Stored energy at positions x (n), uJ.
 double shell_energy(const ShellModel& model, std::span<const Vec3> x, const Fibres& fibres = {});
 
 /// Adds the forces of the shell on its particles, mN (minus the energy's gradient).
 void add_shell_forces(const ShellModel& model, std::span<const Vec3> x, std::span<Vec3> force,
                       const Fibres& fibres = {});
+/// The same with a law for the membrane; bending stays as it is.
+void add_shell_forces(const ShellModel& model, std::span<const Vec3> x, std::span<Vec3> force, const ShellLaw& law);
 
 /// The energy's second derivatives at x (3n x 3n, lower triangle), mN/mm, without the parts that may make it
 /// indefinite: compressed membranes' geometric stiffness, and the change of the normals in bending.
 Eigen::SparseMatrix<double> shell_stiffness(const ShellModel& model, std::span<const Vec3> x,
                                             const Fibres& fibres = {});
+
+/// Takes a block (3 x 3) of the stiffness: of the force on particle i, times -1, by the place of particle j.
+using ShellBlocks = std::function<void(Index i, Index j, const Mat3& block)>;
+/// The same numbers, block by block, each triangle's in turn (a pair of particles comes several times; i < j is left
+/// out).
+void shell_stiffness_blocks(const ShellModel& model, std::span<const Vec3> x, const Fibres& fibres,
+                            const ShellBlocks& add);
+/// With a law for the membrane: its derivatives are taken by differences, made symmetric, and never below a trace of
+/// the shell's own stiffness.
+void shell_stiffness_blocks(const ShellModel& model, std::span<const Vec3> x, const ShellLaw& law,
+                            const ShellBlocks& add);
 
 /// Green's strain of a triangle at x, in its rest frame.
 Eigen::Matrix2d shell_strain(const ShellTriangle& triangle, std::span<const Vec3> x);

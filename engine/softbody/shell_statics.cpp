@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <utility>
 
 #include "core/check.h"
 
@@ -13,37 +15,110 @@ namespace {
 constexpr double largest_move_mm = 2.0;  // of a particle in an iteration
 constexpr int most_halvings = 25;
 constexpr int most_halvings_of_old = 3;  // with factors of another x
-constexpr double worth_keeping = 0.3;    // factors that brought the largest force below this part of itself
-constexpr double sufficient = 1e-4;      // part of the decrease that the slope promises (Armijo)
+constexpr int look_after = 8;            // steps: if factors are still worth keeping
+constexpr double worth_keeping = 0.1;    // when they brought the largest force below this part of itself
+constexpr std::size_t most_secants = 12;
+constexpr double sufficient = 1e-4;  // part of the decrease that the slope promises (Armijo)
+constexpr double blurred = 1e-8;     // part of the energy below which a change of it is not trusted
+constexpr double against = 0.5;  // of the forces' work along a step at its beginning, that they may do against it at
+                                 // its end
 
-/// W = 1/2 S : (C - 1) of each triangle's volume.
-double stress_energy(const ShellModel& model, std::span<const Vec3> stress, std::span<const Vec3> x) {
-    double energy = 0.0;
-    for (std::size_t k = 0; k < stress.size(); ++k) {
-        const ShellTriangle& t = model.triangles[k];
-        const Eigen::Matrix2d e = shell_strain(t, x);
-        energy += t.area_mm2 * t.thickness_mm *
-                  (stress[k][0] * e(0, 0) + stress[k][1] * e(1, 1) + 2.0 * stress[k][2] * e(0, 1));
-    }
-    return energy;
-}
+/// What a step showed of the true stiffness; the factors' step is made to agree with the last ones of them (the method
+/// of Broyden, Fletcher, Goldfarb and Shanno as [matthies1979] uses it).
+struct Secant {
+    Eigen::VectorXd way, change;  // of the places; of the forces, times -1
+    double slope = 0.0;           // way . change, > 0
+};
 
-void add_stress_forces(const ShellModel& model, std::span<const Vec3> stress, std::span<const Vec3> x,
-                       std::vector<Vec3>& force) {
-    for (std::size_t k = 0; k < stress.size(); ++k) {
-        const ShellTriangle& t = model.triangles[k];
-        const auto place = [&](int corner) { return x[static_cast<std::size_t>(t.corner[corner])]; };
-        Eigen::Matrix<double, 3, 2> edges;
-        edges << place(1) - place(0), place(2) - place(0);
-        Eigen::Matrix2d s;
-        s << stress[k][0], stress[k][2], stress[k][2], stress[k][1];
-        const Eigen::Matrix<double, 3, 2> pull =
-            t.area_mm2 * t.thickness_mm * edges * t.rest_inverse * s * t.rest_inverse.transpose();
-        force[static_cast<std::size_t>(t.corner[1])] -= pull.col(0);
-        force[static_cast<std::size_t>(t.corner[2])] -= pull.col(1);
-        force[static_cast<std::size_t>(t.corner[0])] += pull.col(0) + pull.col(1);
+/// The matrix of the free particles: laid out once, filled anew where it stands.
+class Matrix {
+public:
+    Matrix(const ShellModel& model, const std::vector<Eigen::Index>& place, Eigen::Index free, ShellFactors& factors)
+        : model_(model), place_(place), free_(free), factors_(factors) {
+        if (factors.place.empty()) lay_out();
     }
-}
+
+    /// False where it cannot be factorised.
+    bool factorise(std::span<const Vec3> x, const ShellRest& rest,
+                   const std::vector<Eigen::Triplet<double>>& load_stiffness) {
+        Eigen::SparseMatrix<double>& k = factors_.matrix;
+        double* const value = k.valuePtr();
+        std::fill(value, value + k.nonZeros(), 0.0);
+        std::size_t at = 0;
+        const ShellBlocks add = [&](Index i, Index j, const Mat3& block) {
+            const int* const column = &factors_.place[at];
+            at += 3;
+            if (column[0] < 0) return;
+            for (int c = 0; c < 3; ++c)
+                for (int r = i == j ? c : 0; r < 3; ++r) value[column[c] + r - (i == j ? c : 0)] += block(r, c);
+        };
+        if (rest.law)
+            shell_stiffness_blocks(model_, x, rest.law, add);
+        else
+            shell_stiffness_blocks(model_, x, rest.fibres, add);
+        double diagonal = 0.0;
+        for (Eigen::Index i = 0; i < 3 * free_; ++i) diagonal = std::max(diagonal, value[k.outerIndexPtr()[i]]);
+        for (const Eigen::Triplet<double>& t : load_stiffness) {
+            const Eigen::Index r = unknown(t.row()), c = unknown(t.col());
+            if (t.row() < t.col() || r < 0 || c < 0) continue;
+            value[find(r, c)] += t.value();
+        }
+        // A little of the diagonal keeps a slack membrane's matrix definite; it changes the way, not the end.
+        for (Eigen::Index i = 0; i < 3 * free_; ++i) value[k.outerIndexPtr()[i]] += 1e-9 * diagonal;
+        factors_.solver.factorize(k);
+        return factors_.solver.info() == Eigen::Success;
+    }
+
+private:
+    Eigen::Index unknown(Eigen::Index row) const {
+        const Eigen::Index p = place_[static_cast<std::size_t>(row / 3)];
+        return p < 0 ? -1 : 3 * p + row % 3;
+    }
+    std::ptrdiff_t find(Eigen::Index row, Eigen::Index column) const {
+        const Eigen::SparseMatrix<double>& k = factors_.matrix;
+        const int* const begin = k.innerIndexPtr() + k.outerIndexPtr()[column];
+        const int* const end = k.innerIndexPtr() + k.outerIndexPtr()[column + 1];
+        const int* const it = std::lower_bound(begin, end, static_cast<int>(row));
+        CATHLAB_CHECK(it != end && *it == row, "a load may tie together particles of one triangle alone");
+        return it - k.innerIndexPtr();
+    }
+
+    void lay_out() {
+        std::vector<Eigen::Triplet<double>> entries;
+        const auto each = [&](const auto& f) {
+            for (const ShellTriangle& t : model_.triangles) {
+                for (int j = 0; j < 3; ++j)
+                    for (int i = 0; i < 3; ++i)
+                        if (t.corner[i] >= t.corner[j]) f(t.corner[i], t.corner[j]);
+                for (const Index i : t.patch)
+                    for (const Index j : t.patch)
+                        if (i >= j) f(i, j);
+            }
+        };
+        // Particles keep their order among the unknowns: what is lower there is lower here.
+        each([&](Index i, Index j) {
+            const Eigen::Index a = place_[static_cast<std::size_t>(i)], b = place_[static_cast<std::size_t>(j)];
+            if (a < 0 || b < 0) return;
+            for (int c = 0; c < 3; ++c)
+                for (int r = a == b ? c : 0; r < 3; ++r)
+                    entries.emplace_back(static_cast<int>(3 * a + r), static_cast<int>(3 * b + c), 0.0);
+        });
+        factors_.matrix.resize(3 * free_, 3 * free_);
+        factors_.matrix.setFromTriplets(entries.begin(), entries.end());
+        each([&](Index i, Index j) {
+            const Eigen::Index a = place_[static_cast<std::size_t>(i)], b = place_[static_cast<std::size_t>(j)];
+            for (int c = 0; c < 3; ++c)
+                factors_.place.push_back(a < 0 || b < 0 ? -1
+                                                        : static_cast<int>(find(3 * a + (a == b ? c : 0), 3 * b + c)));
+        });
+        factors_.solver.analyzePattern(factors_.matrix);
+    }
+
+    const ShellModel& model_;
+    const std::vector<Eigen::Index>& place_;
+    Eigen::Index free_;
+    ShellFactors& factors_;
+};
 
 }  // namespace
 
@@ -67,91 +142,123 @@ bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fi
     Eigen::Index free = 0;
     for (std::size_t i = 0; i < n; ++i)
         if (!fixed[i]) place[i] = free++;
-    const auto unknown = [&](Eigen::Index row) { return place[static_cast<std::size_t>(row / 3)]; };
 
-    std::vector<Vec3> force(n), tried;
-    std::vector<Eigen::Triplet<double>> load_stiffness, entries;
-    const auto energy_at = [&](const std::vector<Vec3>& at, std::vector<Vec3>& on) {
-        std::fill(on.begin(), on.end(), Vec3::Zero());
-        load_stiffness.clear();
-        return shell_energy(model, at, rest.fibres) + stress_energy(model, rest.more_stress, at) +
-               load(at, on, load_stiffness);
-    };
+    std::vector<Vec3> force(n), tried, tried_force;
+    std::vector<Eigen::Triplet<double>> load_stiffness;
     ShellFactors own;
     ShellFactors& factors = rest.factors != nullptr ? *rest.factors : own;
-    Eigen::SparseMatrix<double> k(3 * free, 3 * free);
-    bool fresh = false;  // the factors are of this x
-    double energy = energy_at(x, force), before = factors.usable ? std::numeric_limits<double>::infinity() : 0.0;
-    for (int iteration = 0; iteration < rest.most_iterations; ++iteration) {
-        add_shell_forces(model, x, force, rest.fibres);
-        add_stress_forces(model, rest.more_stress, x, force);
-        Eigen::VectorXd residual(3 * free);
+    Matrix matrix(model, place, free, factors);
+    // The forces at a place, and the energy there where the law has one.
+    double energy = 0.0;
+    const auto ask = [&](const std::vector<Vec3>& at, bool forces_too) {
+        std::fill(force.begin(), force.end(), Vec3::Zero());
+        load_stiffness.clear();
+        energy = load(at, force, load_stiffness);
+        if (!rest.law) energy += shell_energy(model, at, rest.fibres);
+        if (!forces_too) return;
+        if (rest.law)
+            add_shell_forces(model, at, force, rest.law);
+        else
+            add_shell_forces(model, at, force, rest.fibres);
+    };
+    const auto residual_of = [&](Eigen::VectorXd& out) {
         double largest = 0.0;
         for (std::size_t i = 0; i < n; ++i) {
             if (place[i] < 0) continue;
-            residual.segment<3>(3 * place[i]) = force[i];
+            out.segment<3>(3 * place[i]) = force[i];
             largest = std::max(largest, force[i].norm());
         }
+        return std::isfinite(out.squaredNorm()) ? largest : std::numeric_limits<double>::infinity();
+    };
+    const auto go = [&](double share, const Eigen::VectorXd& step) {
+        tried = x;
+        for (std::size_t i = 0; i < n; ++i)
+            if (place[i] >= 0) tried[i] += share * step.segment<3>(3 * place[i]);
+    };
+
+    Eigen::VectorXd residual(3 * free), there(3 * free), last_residual, last_step;
+    std::deque<Secant> secants;  // since the factors were made
+    const auto direction = [&] {
+        Eigen::VectorXd q = residual;
+        std::vector<double> part(secants.size());
+        for (std::size_t k = secants.size(); k-- > 0;) {
+            part[k] = secants[k].way.dot(q) / secants[k].slope;
+            q -= part[k] * secants[k].change;
+        }
+        Eigen::VectorXd step = factors.solver.solve(q);
+        for (std::size_t k = 0; k < secants.size(); ++k)
+            step += (part[k] - secants[k].change.dot(step) / secants[k].slope) * secants[k].way;
+        return step;
+    };
+    ask(x, true);
+    bool fresh = false;
+    double checked = std::numeric_limits<double>::infinity();  // largest force so many steps ago
+    for (int iteration = 0, since = 0; iteration < rest.most_iterations; ++iteration) {
+        const double largest = residual_of(residual);
         if (!std::isfinite(largest)) return false;
         if (largest < rest.force_tolerance_mn) return true;
-
-        // Factors serve again while they bring the forces down: what they lack is mostly what they never had.
-        fresh = largest > worth_keeping * before || !factors.usable;
-        if (fresh) {
-            entries.clear();
-            const auto add = [&](Eigen::Index r, Eigen::Index c, double value) {
-                if (unknown(r) < 0 || unknown(c) < 0) return;
-                entries.emplace_back(static_cast<int>(3 * unknown(r) + r % 3), static_cast<int>(3 * unknown(c) + c % 3),
-                                     value);
-            };
-            const Eigen::SparseMatrix<double> shell = shell_stiffness(model, x, rest.fibres);
-            double diagonal = 0.0;
-            for (Eigen::Index c = 0; c < shell.outerSize(); ++c)
-                for (Eigen::SparseMatrix<double>::InnerIterator it(shell, c); it; ++it) {
-                    add(it.row(), it.col(), it.value());
-                    if (it.row() == it.col()) diagonal = std::max(diagonal, it.value());
-                }
-            for (const Eigen::Triplet<double>& t : load_stiffness)
-                if (t.row() >= t.col()) add(t.row(), t.col(), t.value());
-            // A little of the diagonal keeps a slack membrane's matrix definite; it changes the way, not the end.
-            for (Eigen::Index i = 0; i < 3 * free; ++i)
-                entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1e-9 * diagonal);
-            k.setFromTriplets(entries.begin(), entries.end());
-            const std::span<const int> rows(k.innerIndexPtr(), static_cast<std::size_t>(k.nonZeros()));
-            if (!std::equal(rows.begin(), rows.end(), factors.pattern.begin(), factors.pattern.end())) {
-                factors.solver.analyzePattern(k);
-                factors.pattern.assign(rows.begin(), rows.end());
+        if (last_step.size() > 0) {
+            Secant now{last_step, last_residual - residual, 0.0};
+            now.slope = now.way.dot(now.change);
+            if (now.slope > 1e-3 * last_residual.dot(last_step)) {
+                if (secants.size() == most_secants) secants.pop_front();
+                secants.push_back(std::move(now));
             }
-            factors.solver.factorize(k);
-            factors.usable = factors.solver.info() == Eigen::Success;
-            if (!factors.usable) return false;
         }
-        before = largest;
-        const Eigen::VectorXd step = factors.solver.solve(residual);
+        if (++since == look_after) {
+            if (largest > worth_keeping * checked) factors.usable = false;
+            checked = largest;
+            since = 0;
+        }
+        fresh = !factors.usable;
+        if (fresh) {
+            secants.clear();
+            factors.usable = matrix.factorise(x, rest, load_stiffness);
+            if (!factors.usable) return false;
+            checked = largest;
+            since = 0;
+        }
+        const Eigen::VectorXd step = direction();
         double far = 0.0;
         for (Eigen::Index i = 0; i < free; ++i) far = std::max(far, step.segment<3>(3 * i).norm());
         double share = std::min(1.0, largest_move_mm / std::max(far, 1e-300));
-        const double slope = residual.dot(step);
+        const double slope = residual.dot(step), from = energy;
+        if (!(slope > 0.0)) {
+            if (fresh) return false;
+            factors.usable = false;
+            last_step.resize(0);
+            continue;
+        }
         const double rounding = 1e-12 * std::fabs(energy);
         for (int halving = 0;; ++halving) {
-            tried = x;
-            for (std::size_t i = 0; i < n; ++i)
-                if (place[i] >= 0) tried[i] += share * step.segment<3>(3 * place[i]);
-            const double lower = energy_at(tried, force);
-            if (lower <= energy - sufficient * share * slope + rounding) {
-                energy = lower;
-                break;
+            go(share, step);
+            ask(tried, static_cast<bool>(rest.law));
+            bool good = !rest.law && energy <= from - sufficient * share * slope + rounding;
+            if (!good && (rest.law || std::fabs(energy - from) < blurred * std::fabs(from))) {
+                // Without an energy, or where its digits end: the forces must not work against the way at its end.
+                if (!rest.law) {
+                    tried_force = force;
+                    add_shell_forces(model, tried, tried_force, rest.fibres);
+                    tried_force.swap(force);
+                }
+                good = std::isfinite(residual_of(there)) && there.dot(step) >= -against * slope;
+                if (!rest.law) tried_force.swap(force);
             }
+            if (good) break;
             if (halving == (fresh ? most_halvings : most_halvings_of_old)) {
                 if (fresh) return false;
                 factors.usable = false;  // factors of another x may lead nowhere: stay, and make them anew
                 tried = x;
-                energy = energy_at(x, force);
+                share = 0.0;
+                ask(tried, static_cast<bool>(rest.law));
                 break;
             }
             share *= 0.5;
         }
+        last_residual = residual;
+        last_step = share > 0.0 ? Eigen::VectorXd(share * step) : Eigen::VectorXd();
         x.swap(tried);
+        if (!rest.law) add_shell_forces(model, x, force, rest.fibres);
     }
     return false;
 }

@@ -15,18 +15,20 @@
 namespace cathlab {
 
 /// Adds a load's forces at x (mN) and what they change with x, minus their derivatives (mN/mm; both triangles, positive
-/// semi-definite), and returns its potential, uJ.
+/// semi-definite, between particles of one triangle), and returns its potential, uJ.
 using ShellLoad = std::function<double(std::span<const Vec3> x, std::span<Vec3> force,
                                        std::vector<Eigen::Triplet<double>>& stiffness)>;
 
 /// A force that stays as it is, one a particle.
 ShellLoad dead_load(std::vector<Vec3> force);
 
-/// What one search for rest leaves to the next one of the same shell: while its factors bring the forces down, they
-/// are used again.
+/// What one search for rest leaves to the next one of the same shell, held at the same particles: where the matrix has
+/// its numbers, and its factors, which are used again while they bring the forces down.
 struct ShellFactors {
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
-    std::vector<int> pattern;  ///< rows of the matrix that the factorisation was laid out for
+    Eigen::SparseMatrix<double> matrix;
+    std::vector<int>
+        place;  ///< of each block of each triangle, its three columns among the matrix's numbers; -1 = none
     bool usable = false;
 };
 
@@ -34,8 +36,9 @@ struct ShellRest {
     double force_tolerance_mn = 1e-4;  ///< no free particle feels more
     int most_iterations = 200;
     Fibres fibres = {};
-    /// (triangles) second Piola-Kirchhoff stress that is added to the law's, kPa (11, 22, 12), or empty.
-    std::span<const Vec3> more_stress = {};
+    /// In place of the membrane's own law.  It need not have an energy: the search then follows the work that forces do
+    /// on the way.
+    ShellLaw law = {};
     ShellFactors* factors = nullptr;  ///< kept from call to call; null = made anew
 };
 

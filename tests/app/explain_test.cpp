@@ -73,5 +73,20 @@ TEST(Explain, AFolderThatIsWrongIsOneSentenceAndLeavesNothing) {
             "stress");
 }
 
+TEST(Explain, ASignalToEndLeavesNothingHalfWritten) {
+    const TemporaryFolder folder;
+    std::ostringstream csv;  // more rows than are explained within a second
+    csv << "run,t_s,displacement_mm\n";
+    for (int i = 0; i < 3000; ++i)
+        csv << i / 1500 << "," << 0.04 * i << "," << std::sin(0.01 * i) + 0.3 * std::cos(0.37 * i * (1 + i % 7))
+            << "\n";
+    folder.write("data/dataset.toml", described("heart-motion", "beat_times_s = []\naxis = [0, 0, 1]\n"));
+    folder.write("data/data.csv", csv.str());
+    const Outcome done = call("explain " + folder.path("data") + " --threads 2 --out " + folder.path("out") + " 2>" +
+                              folder.path("said") + " & p=$!; sleep 1; kill -TERM $p; wait $p");
+    EXPECT_NE(done.code, 0) << done.text;
+    EXPECT_FALSE(std::filesystem::exists(folder.path("out")));
+}
+
 }  // namespace
 }  // namespace cathlab

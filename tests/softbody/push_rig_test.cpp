@@ -9,6 +9,7 @@
 
 #include "core/errors.h"
 #include "softbody/held_tube.h"
+#include "softbody/shell_statics.h"
 
 namespace cathlab {
 namespace {
@@ -50,6 +51,54 @@ TEST(PushRig, UnloadingIsLoadingOnceMore) {
     const PushResult result = wall.push(push);
     EXPECT_EQ(result.force_mn.back(), result.force_mn[1]);
     EXPECT_EQ(result.marker_mm.back(), result.marker_mm[1]);
+}
+
+PushedLaw elastic_law(double times) {
+    PushedLaw law;
+    law.membrane = [times](const MembraneMaterial& material, MembranePoint& point) {
+        ask_elastic_law({times * material.mu_kpa, material.thinning, material.round}, {}, point);
+    };
+    return law;
+}
+
+void expect_same(const PushResult& a, const PushResult& b) {
+    ASSERT_TRUE(a.at_rest);
+    ASSERT_TRUE(b.at_rest);
+    for (std::size_t k = 0; k < a.force_mn.size(); ++k) {
+        EXPECT_LT((a.marker_mm[k] - b.marker_mm[k]).norm(), 1e-3) << k;
+        EXPECT_NEAR(a.force_mn[k], b.force_mn[k], 0.5) << k;
+    }
+}
+
+TEST(PushRig, TheElasticLawAskedAsEffectsAreIsTheWallsOwn) {
+    const PushedWall wall(held_tube(60.0));
+    expect_same(wall.push(outward(2.0)), wall.push(outward(2.0), elastic_law(1.0)));
+}
+
+TEST(PushRig, WhatASearchLeftShortensTheNextAndChangesNothing) {
+    const PushedWall wall(held_tube(60.0));
+    Push first = outward(2.0);
+    first.keep_wall = true;
+    std::vector<std::shared_ptr<ShellFactors>> factors(first.ball_mm.size());
+    first.factors = factors;
+    const PushResult known = wall.push(first, elastic_law(1.0));
+    Push second = outward(2.0);
+    second.guess = known.wall_mm;
+    second.factors = factors;
+    expect_same(wall.push(outward(2.0), elastic_law(1.2)), wall.push(second, elastic_law(1.2)));
+}
+
+TEST(PushRig, TissueRoundTheWallPushesBackTheHarderTheStifferItIs) {
+    const PushedWall wall(held_tube(60.0));
+    PushedLaw law;
+    double last = wall.push(outward(2.0)).force_mn.back();
+    for (const double support : {0.5, 2.0, 8.0, 32.0}) {
+        law.support_kpa_per_mm = support;
+        const PushResult result = wall.push(outward(2.0), law);
+        ASSERT_TRUE(result.at_rest);
+        EXPECT_GT(result.force_mn.back(), last) << support;
+        last = result.force_mn.back();
+    }
 }
 
 TEST(PushRig, WhatIsHeldNowhereOrHasNoSizeIsTold) {

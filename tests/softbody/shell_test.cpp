@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "softbody/membrane.h"
 #include "softbody/rig.h"
 #include "softbody/shell_statics.h"
 
@@ -188,6 +189,42 @@ TEST(Shell, ARingUnderPressureWidensAsAThinWallDoes) {
     }
     EXPECT_NEAR(strain / count, pressure * radius / (material.young_kpa * material.thickness_mm),
                 0.03 * pressure * radius / material.young_kpa);
+}
+
+/// A tube under pressure, and how far it widens with a law `times` as stiff as the shell's own, asked from outside.
+double widened(double times, bool from_outside) {
+    const WallSample sample = tube(12.0, 24.0, 2.5);
+    const ShellMaterial material{.young_kpa = 500.0, .poisson = 0.45, .thickness_mm = 1.0};
+    const ShellModel shell = build_shell(sample.position, sample.triangles, {&material, 1});
+    std::vector<Vec3> load;
+    std::vector<std::uint8_t> fixed;
+    for (std::size_t i = 0; i < sample.position.size(); ++i) {
+        Vec3 radial = sample.position[i];
+        radial.z() = 0.0;
+        load.emplace_back(6.0 * sample.area_mm2[i] * radial.normalized());
+        fixed.push_back(sample.position[i].z() < 2.0 || sample.position[i].z() > 22.0 ? 1 : 0);
+    }
+    ShellRest rest{.force_tolerance_mn = 1e-6};
+    if (from_outside)
+        rest.law = [&](std::size_t k, const Vec3& c) {
+            const ShellTriangle& t = shell.triangles[k];
+            MembranePoint point;
+            point.c = c;
+            ask_elastic_law({times * t.mu_kpa, t.thinning, t.round}, {}, point);
+            return point.stress;
+        };
+    std::vector<Vec3> x = sample.position;
+    EXPECT_TRUE(shell_equilibrium(shell, fixed, dead_load(load), x, rest));
+    double most = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) most = std::max(most, x[i].head<2>().norm() - 12.0);
+    return most;
+}
+
+TEST(Shell, ALawAskedFromOutsideComesToTheSameRest) {
+    const double own = widened(1.0, false);
+    EXPECT_GT(own, 0.5) << "far enough that the law is no straight line";
+    EXPECT_NEAR(widened(1.0, true) / own, 1.0, 1e-6);
+    EXPECT_LT(widened(2.0, true), 0.62 * own);
 }
 
 /// Largest drop of a cantilever plate under a line load at its end, over what bending theory says.
