@@ -14,9 +14,11 @@ namespace cathlab {
 namespace {
 
 // Models are searched on particles so far apart; what that costs is known of the base model, which is solved on finer
-// ones too, and taken off every model.
-constexpr double spacing_mm = 4.0, far_spacing_mm = 9.0;
-constexpr double fine_spacing_mm = 2.5, fine_far_spacing_mm = 6.0;
+// ones too, and taken off every model in proportion.
+static const double spacing_mm = std::getenv("SP") ? std::atof(std::getenv("SP")) : 4.0,
+                    far_spacing_mm = 2.25 * spacing_mm;
+static const double fine_spacing_mm = std::getenv("SPF") ? std::atof(std::getenv("SPF")) : 2.5,
+                    fine_far_spacing_mm = 2.4 * fine_spacing_mm;
 
 // Factors kept of every sample's matrix are some MB each.
 constexpr std::size_t most_factors = 400;
@@ -87,8 +89,11 @@ public:
                 double force = fine_[run].force_mn[k];
                 if (walled && !at_rest) place.setConstant(std::numeric_limits<double>::quiet_NaN());
                 if (walled && at_rest) {
-                    place += own.marker_mm[k] - plain_[run].marker_mm[k];
-                    force += own.force_mn[k] - plain_[run].force_mn[k];
+                    const Vec3 &coarse = plain_[run].marker_mm[k], &rest = pushes_[run].marker_mm;
+                    const double moved = part_of((own.marker_mm[k] - rest).norm(), (coarse - rest).norm());
+                    place = own.marker_mm[k] + moved * (place - coarse);
+                    const double pushed = part_of(own.force_mn[k], plain_[run].force_mn[k]);
+                    force = own.force_mn[k] + pushed * (force - plain_[run].force_mn[k]);
                 }
                 if (!place.allFinite()) {  // came to no rest: as bad as a wall that does not move
                     place = pushes_[run].marker_mm + Vec3::Constant(no_rest_mm);
@@ -109,12 +114,20 @@ public:
     }
 
     bool takes_up(const EffectInfo& effect, std::string_view key) const override {
-        // The walls of this rig have no direction: their fibres lie every way alike.
-        return effect.name == "stiffening" && (key == "angle_deg" || key == "dispersion");
+        // The walls of this rig have no direction: their fibres lie every way alike.  A ball strains too little of them
+        // to tell measures of strain apart.
+        return key == "measure" || (effect.name == "stiffening" && (key == "angle_deg" || key == "dispersion"));
     }
 
 private:
     static constexpr double no_rest_mm = 20.0;
+
+    /// How much of what finer particles change of the base model they change of another one: as much more or less as
+    /// that one moves.
+    static double part_of(double own, double plain) {
+        constexpr double most = 3.0, nothing = 1e-3;
+        return std::fabs(plain) > nothing ? std::clamp(own / plain, 0.0, most) : 1.0;
+    }
 
     struct Memory final : RigMemory {
         std::vector<std::vector<std::vector<Vec3>>> wall;                 // (runs, samples)

@@ -40,7 +40,6 @@ private:
 /// Other numbers for what only shapes an effect: near each end of the range of one of them, then all spread over their
 /// ranges.  False where there are no more.
 bool reshape(const EffectInfo& effect, const std::vector<bool>& free, int number, std::vector<double>& values) {
-    constexpr int spread = 2;  // shapes in which all differ
     std::vector<std::size_t> shapes;
     for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
         const Parameter& p = effect.parameters[k];
@@ -48,6 +47,7 @@ bool reshape(const EffectInfo& effect, const std::vector<bool>& free, int number
             shapes.push_back(k);
     }
     const int single = 2 * static_cast<int>(shapes.size());
+    const int spread = shapes.size() > 2 ? 12 : 2;  // shapes in which all differ
     if (shapes.empty() || number > single + spread) return false;
     for (std::size_t j = 0; j < shapes.size(); ++j) {
         const Parameter& p = effect.parameters[shapes[j]];
@@ -401,7 +401,7 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
     constexpr std::size_t few = 2;
     const bool base_too = rig_.bounds().size() <= few;
     const bool shaped = base_too && !rig_.bounds().empty() && !rig_.slow();
-    const std::size_t searched = rig_.slow() ? 1 : shaped ? 6 : 2;  // of each way
+    const std::size_t searched = rig_.slow() ? 1 : shaped ? 12 : 2;  // of each way
     std::vector<FittedModel> tried[2];
     const std::vector<double> usual = defaults(effect);
     const auto better = [](const FittedModel& a, const FittedModel& b) { return a.train_cost < b.train_cost; };

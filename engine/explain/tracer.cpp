@@ -68,6 +68,7 @@ struct Child {
     double held_out_cost = 0.0, p = 1.0;
     std::string refused;
     bool on_bound = false;  ///< nothing else is against it
+    bool hidden = false;    ///< it helps, but not by more than chance allows
 };
 
 /// The search of one explanation.
@@ -154,10 +155,13 @@ private:
         const double known = mean_cost(best_.residual, split_, 1, fitter_.scale());
         for (Child& child : children) {
             judge(child, static_cast<double>(children.size()));
-            // A number on its bound may come off it beside another effect.
+            // A number on its bound may come off it beside another effect, and what is no more than chance while
+            // another effect hides it may show beside that one.
             if (child.refused.empty() || child.on_bound) promising.push_back(&child);
             if (child.refused.empty() && child.held_out_cost < known) accepted.push_back(&child);
         }
+        for (Child& child : children)
+            if (accepted.empty() && child.hidden) promising.push_back(&child);
         const auto better = [](const Child* a, const Child* b) { return a->held_out_cost < b->held_out_cost; };
         std::stable_sort(accepted.begin(), accepted.end(), better);
         std::stable_sort(promising.begin(), promising.end(), better);
@@ -198,8 +202,11 @@ private:
         const LossScale& scale = fitter_.scale();
         const double before = mean_cost(parent.residual, split_, 1, scale);
         child.held_out_cost = mean_cost(child.model.residual, split_, 1, scale);
-        child.p =
-            std::min(1.0, tries * gain_by_chance(parent.residual, child.model.residual, split_, scale, options_.seed));
+        // A parent that was not accepted itself proves nothing: beside it, the last model that was has to be beaten.
+        const auto by_chance = [&](const FittedModel& known) {
+            return gain_by_chance(known.residual, child.model.residual, split_, scale, options_.seed);
+        };
+        child.p = std::min(1.0, tries * std::max(by_chance(parent), by_chance(best_)));
         const auto trial = std::find_if(child.model.effects.begin(), child.model.effects.end(),
                                         [&](const EffectTrial& t) { return t.effect == child.effect; });
         const double gain = 1.0 - std::sqrt(child.held_out_cost / before);
@@ -209,6 +216,9 @@ private:
             child.refused = "the held-out error falls by less than 1 %";
         else
             child.refused = why_no_effect(*trial, fitter_.free_parameters(*child.effect));
+        constexpr double much = 0.03;
+        child.hidden = !rig_->slow() && child.p >= significant && gain >= much &&
+                       why_no_effect(*trial, fitter_.free_parameters(*child.effect)).empty();
         if (child.p >= significant || gain < least_gain) return;
         if (child.refused.empty())
             for (const EffectTrial& other : child.model.effects) {
@@ -320,7 +330,9 @@ private:
                 continue;
             }
             const FittedModel without = fitter_.without(best, k);
-            const double p = gain_by_chance(without.residual, best.residual, split_, fitter_.scale(), options_.seed);
+            const double p = std::min(
+                1.0, static_cast<double>(tried_.size()) *
+                         gain_by_chance(without.residual, best.residual, split_, fitter_.scale(), options_.seed));
             const double gain = 1.0 - std::sqrt(mean_cost(best.residual, split_, 1, fitter_.scale()) /
                                                 mean_cost(without.residual, split_, 1, fitter_.scale()));
             const std::string none = why_no_effect(best.effects[k], fitter_.free_parameters(*effect));
@@ -353,7 +365,6 @@ private:
         out_.held_out_after = rms_of(best.residual, split_, 1);
         for (FittedEffect& effect : out_.effects) {
             effect.held_out_after = out_.held_out_after;
-            effect.p_value = std::min(1.0, effect.p_value * static_cast<double>(tried_.size()));
             row_of(*effect.info).refused_because.clear();
         }
         std::stable_sort(out_.effects.begin(), out_.effects.end(), [](const FittedEffect& a, const FittedEffect& b) {

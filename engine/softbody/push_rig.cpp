@@ -70,12 +70,13 @@ std::vector<Vec3> contact_points() {
 /// The ball's push: potential, forces, stiffness; `total` is its force on the wall.
 class Ball {
 public:
-    Ball(const ShellModel& shell, const Vec3& centre, double radius, double near, double bed_kpa_per_mm)
+    Ball(const ShellModel& shell, const Vec3& centre, double radius, double near, double young_kpa, double thickness_mm)
         : shell_(shell),
           centre_(centre),
           radius_(radius),
           near_(near),
-          bed_(bed_kpa_per_mm),
+          young_kpa_(young_kpa),
+          thickness_mm_(thickness_mm),
           points_(contact_points()) {}
 
     double operator()(std::span<const Vec3> x, std::span<Vec3> force, std::vector<Eigen::Triplet<double>>& stiffness,
@@ -86,19 +87,24 @@ public:
             std::array<Vec3, 3> corner;
             for (int k = 0; k < 3; ++k) corner[static_cast<std::size_t>(k)] = x[at(t.corner[k])];
             if ((corner[0] - centre_).norm() > radius_ + near_) continue;
-            const double bed = bed_ * t.area_mm2 / static_cast<double>(points_.size());
+            const double area = t.area_mm2 / static_cast<double>(points_.size());
             std::array<Mat3, 6> block;  // corners 0 0, 1 0, 1 1, 2 0, 2 1, 2 2
             bool touched = false;
+            const Vec3 outward = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
             for (const Vec3& w : points_) {
                 const Vec3 off = w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2] - centre_;
-                const double distance = off.norm(), depth = radius_ - distance;
-                if (!(depth > 0.0) || !(distance > 0.0)) continue;
-                const Vec3 normal = off / distance, push = bed * depth * normal;
-                potential += 0.5 * bed * depth * depth;
+                if (!(off.squaredNorm() < radius_ * radius_)) continue;
+                // A point that went past the centre is pushed back over it, not on.
+                const double side = off.dot(outward) < 0.0 ? -1.0 : 1.0;
+                const double distance = side * off.norm();
+                if (distance == 0.0) continue;
+                const Pressed bed = pressed(radius_ - distance);
+                const Vec3 normal = off / distance, push = area * bed.pressure_kpa * normal;
+                potential += area * bed.energy_kpa_mm;
                 total += push;
                 if (!touched) block.fill(Mat3::Zero());
                 touched = true;
-                const Mat3 stiff = bed * normal * normal.transpose();
+                const Mat3 stiff = area * bed.slope_kpa_per_mm * normal * normal.transpose();
                 for (int i = 0, at_block = 0; i < 3; ++i) {
                     force[at(t.corner[i])] += w[i] * push;
                     for (int j = 0; j <= i; ++j, ++at_block)
@@ -118,10 +124,48 @@ public:
         return potential;
     }
 
+    /// Whether the ball's centre is on the inner side of the wall that is nearest to it.
+    bool inside(std::span<const Vec3> x) const {
+        double nearest = radius_;
+        bool out = true;
+        for (const ShellTriangle& t : shell_.triangles) {
+            std::array<Vec3, 3> corner;
+            for (int k = 0; k < 3; ++k) corner[static_cast<std::size_t>(k)] = x[at(t.corner[k])];
+            if ((corner[0] - centre_).norm() > radius_ + near_) continue;
+            const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+            for (const Vec3& w : points_) {
+                const Vec3 off = w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2] - centre_;
+                if (off.norm() >= nearest) continue;
+                nearest = off.norm();
+                out = off.dot(normal) > 0.0;
+            }
+        }
+        return out;
+    }
+
 private:
+    struct Pressed {
+        double pressure_kpa = 0.0, slope_kpa_per_mm = 0.0, energy_kpa_mm = 0.0;
+    };
+    /// The bed pressed by a depth > 0: what is left of its thickness is l of it,
+    ///     p = E/3 (l^-2 - l),   l = 1 - depth / t,
+    /// a neo-Hookean bar's; on in a straight line where less than least_left is left.
+    Pressed pressed(double depth) const {
+        constexpr double least_left = 0.2;
+        const double e = young_kpa_ / 3.0, l = std::max(1.0 - depth / thickness_mm_, least_left);
+        const double beyond = depth - (1.0 - l) * thickness_mm_;
+        Pressed out;
+        out.slope_kpa_per_mm = e / thickness_mm_ * (2.0 / (l * l * l) + 1.0);
+        const double at_l = e * (1.0 / (l * l) - l);
+        out.pressure_kpa = at_l + out.slope_kpa_per_mm * beyond;
+        out.energy_kpa_mm = e * thickness_mm_ * (1.0 / l - 1.0 - 0.5 * (1.0 - l * l)) +
+                            beyond * (at_l + 0.5 * out.slope_kpa_per_mm * beyond);
+        return out;
+    }
+
     const ShellModel& shell_;
     Vec3 centre_;
-    double radius_, near_, bed_;
+    double radius_, near_, young_kpa_, thickness_mm_;
     std::vector<Vec3> points_;
 };
 
@@ -202,7 +246,7 @@ TriMesh straight_lumen(double radius_mm, double length_mm, double spacing_mm) {
 PushedWall::PushedWall(const PushRig& rig)
     : ball_radius_mm_(rig.ball_radius_mm + 0.5 * rig.thickness_mm),
       spacing_mm_(rig.particle_spacing_mm),
-      bed_kpa_per_mm_(rig.young_kpa / rig.thickness_mm) {
+      young_kpa_(rig.young_kpa) {
     require_above_zero("the wall's thickness, mm,", rig.thickness_mm);
     require_above_zero("the ball's radius, mm,", rig.ball_radius_mm);
     require_above_zero("the particle spacing, mm,", rig.particle_spacing_mm);
@@ -286,7 +330,7 @@ public:
     bool solve(const Vec3& before, const Vec3& centre, const std::vector<Vec3>& from, std::vector<Vec3>& x,
                Vec3& total) {
         bool found = settle(centre, x, total);
-        for (int tries = 0, count = 4; !found && tries < 1; ++tries, count *= 4) {
+        for (int tries = 0, count = 4; !found && tries < 2; ++tries, count *= 4) {
             x = from;
             for (std::size_t i = 0; i < x.size(); ++i)
                 if (wall_.fixed_[i]) slipped_[i] = x[i] - wall_.rest_[i];
@@ -306,7 +350,8 @@ private:
 
     /// Moves x to rest; total: the ball's force.
     bool settle(const Vec3& centre, std::vector<Vec3>& x, Vec3& total) {
-        const Ball ball(wall_.shell_, centre, wall_.ball_radius_mm_, 4.0 * wall_.spacing_mm_, wall_.bed_kpa_per_mm_);
+        const Ball ball(wall_.shell_, centre, wall_.ball_radius_mm_, 4.0 * wall_.spacing_mm_, wall_.young_kpa_,
+                        wall_.thickness_mm_);
         const ShellLoad load = [&](std::span<const Vec3> at_x, std::span<Vec3> force,
                                    std::vector<Eigen::Triplet<double>>& stiffness) {
             return ball(at_x, force, stiffness, total) + surround(at_x, force, stiffness);
@@ -317,7 +362,7 @@ private:
             const double moved = let_slip(x);
             if (round >= most_rounds || moved < still_mm) break;
         }
-        return true;
+        return ball.inside(x);  // a wall that jumped over the ball is at rest as well
     }
 
     void keep(const std::vector<Vec3>& x) {

@@ -2,8 +2,8 @@
 // a finite-element model of a contact is, as an elastic shell at rest (softbody/shell.h).
 //
 // The shell is the wall's middle surface, half a thickness outside the lumen; so the ball is half a thickness larger.
-// It touches without friction, on a bed of springs of E / t: what the wall gives way through its own thickness, which a
-// shell does not know.
+// It touches without friction, on a bed of neo-Hookean bars as long as the wall is thick: what the wall gives way
+// through its own thickness, which a shell does not know.
 #pragma once
 
 #include <functional>
@@ -95,7 +95,7 @@ private:
     double thickness_mm_ = 1.0;
     std::vector<std::uint8_t> fixed_;
     ShellModel shell_;
-    double ball_radius_mm_ = 0.0, spacing_mm_ = 0.0, bed_kpa_per_mm_ = 0.0;
+    double ball_radius_mm_ = 0.0, spacing_mm_ = 0.0, young_kpa_ = 0.0;
 };
 
 /// A straight open tube about z from 0, its mesh fine enough for the spacing.

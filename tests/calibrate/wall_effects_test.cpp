@@ -118,13 +118,15 @@ void compare(const char* name, const std::vector<double>& values, double within)
 TEST(WallEffects, AreTheSameInTheStepsAsInTheClosedForm) {
     compare("stiffening", {40.0, 1.5, 10.0, 0.2, 0.0}, 0.02);
     compare("slack", {0.05}, 0.02);
-    compare("creep", {0.1, 0.5}, 0.02);
+    compare("creep", {0.1, 0.5, 2.0}, 0.02);
+    compare("creep", {0.1, 0.5, 1.0}, 0.02);
     compare("entanglement", {0.5}, 0.02);
     compare("chain_limit", {0.3}, 0.02);
     compare("softening", {0.4, 0.6}, 0.02);
-    compare("viscoelasticity", {0.5, 0.7}, 0.02);
+    compare("viscoelasticity", {0.5, 0.7, 2.0}, 0.02);
+    compare("viscoelasticity", {0.5, 0.7, 1.0}, 0.02);
     // Nearer to Voigt's solid (share 1) what is held so firmly is slow in the steps beside the law: heavy particles.
-    compare("viscoelasticity", {0.8, 0.7}, 0.05);
+    compare("viscoelasticity", {0.8, 0.7, 2.0}, 0.05);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "effects/effect.h"
+#include "effects/measure.h"
 #include "effects/without_strength.h"
 #include "softbody/uniaxial.h"
 
@@ -87,7 +88,7 @@ TEST(Wall, ASlackWallBearsNothingUntilItIsStraight) {
 }
 
 TEST(Wall, CreepGoesWithTheLogarithmOfTimeAndStays) {
-    Point point("creep", {0.05, 2.0});
+    Point point("creep", {0.05, 2.0, 2.0});
     // The elastic part is held: what is asked for grows by what has flowed.
     double flowed = 0.0;
     const double elastic_strain = 0.1;
@@ -115,7 +116,7 @@ TEST(Wall, AWallThatWasStretchedFurtherIsSofterByOgdenAndRoxburghsFactor) {
 
 TEST(Wall, AStepOfStrainRelaxesAsAMaxwellElementBesideTheElasticLaw) {
     const double share = 0.4, tau = 2.0, g = share / (1.0 - share), theta = (1.0 - share) * tau;
-    Point point("viscoelasticity", {share, tau});
+    Point point("viscoelasticity", {share, tau, 2.0});
     point.at(1.0, 1.0);
     const MembranePoint after = point.at(1.2, 0.95, 1e-9), law = elastic(1.2, 0.95);
     EXPECT_NEAR(after.stress[0], (1.0 + g) * law.stress[0], 1e-5 * law.stress[0]);
@@ -126,6 +127,46 @@ TEST(Wall, AStepOfStrainRelaxesAsAMaxwellElementBesideTheElasticLaw) {
         EXPECT_NEAR(point.at(1.2, 0.95, dt).stress[0], law.stress[0] * (1.0 + g * std::exp(-t / theta)),
                     1e-6 * law.stress[0]);
     }
+}
+
+TEST(Wall, ByTheSectionAtRestWhatRelaxesIsTheForce) {
+    const double share = 0.4, tau = 2.0, g = share / (1.0 - share);
+    Point point("viscoelasticity", {share, tau, 1.0});
+    point.at(1.0, 1.0);
+    const double narrow = 0.95;
+    point.at(1.2, narrow, 1e-9);
+    point.at(1.2, narrow, 1e6);  // relaxed
+    const double before = 1.2 * elastic(1.2, narrow).stress[0], law = 1.5 * elastic(1.5, narrow).stress[0];
+    const MembranePoint after = point.at(1.5, narrow, 1e-9);
+    EXPECT_NEAR(1.5 * after.stress[0], law + g * (law - before), 1e-5 * law);
+}
+
+TEST(Wall, ByTheLengthAtRestCreepAddsUpAndTheForceIsThatOfTheElasticPart) {
+    Point point("creep", {0.05, 2.0, 1.0});
+    double flowed = 0.0;
+    for (int k = 0; k < 400; ++k) {
+        point.at(1.1 + flowed, 1.0, 0.05);
+        flowed += 0.1 - (std::sqrt(point.ask(1.1 + flowed, 1.0).c[0]) - 1.0);
+    }
+    EXPECT_NEAR(flowed, 0.05 * 0.1 * std::log(1.0 + 20.0 / 2.0), 1e-6);
+    const double along = 1.1 + flowed;
+    EXPECT_NEAR(along * point.ask(along, 1.0).stress[0], 1.1 * elastic(1.1, 1.0).stress[0], 1e-6);
+}
+
+TEST(Wall, MeasuresOfStrainGoIntoOneAnotherAndStressDoesTheSameWorkInEach) {
+    const Vec3 c(1.7, 0.8, 0.3), more = c + 1e-6 * Vec3(0.4, 0.9, -0.2), s(30.0, -12.0, 7.0);
+    const auto twice = [](const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + 2.0 * a[2] * b[2]; };
+    for (const double m : {2.0, 1.0, 0.3, 0.0}) {
+        const StrainMeasure measure(m);
+        EXPECT_LT((measure.c(measure.strain(c)) - c).norm(), 1e-9) << m;
+        EXPECT_LT((measure.second_piola(measure.stress(s, c), c) - s).norm(), 1e-9) << m;
+        // Of a stress with the strain's own axes: S = C.
+        const double work = twice(c, 0.5 * (more - c));
+        EXPECT_NEAR(twice(measure.stress(c, c), measure.strain(more) - measure.strain(c)), work, 1e-4 * std::fabs(work))
+            << m;
+    }
+    EXPECT_NEAR(StrainMeasure(1.0).strain(Vec3(1.21, 1.0, 0.0))[0], 0.1, 1e-9);
+    EXPECT_NEAR(StrainMeasure(0.0).strain(Vec3(1.21, 1.0, 0.0))[0], std::log(1.1), 1e-9);
 }
 
 TEST(Wall, ChainsOfAFiniteLengthAreGents) {

@@ -101,6 +101,17 @@ TEST(PushRig, TissueRoundTheWallPushesBackTheHarderTheStifferItIs) {
     }
 }
 
+TEST(PushRig, ABallPressedFarIntoAFirmlyHeldWallDoesNotComeOutBehindIt) {
+    PushRig rig = held_tube(60.0);
+    rig.particle_spacing_mm = 2.5;
+    PushedLaw firm;
+    firm.support_kpa_per_mm = 2.0;
+    const PushResult result = PushedWall(rig).push(outward(8.0), firm);
+    ASSERT_TRUE(result.at_rest);
+    for (std::size_t k = 1; k < result.force_mn.size(); ++k)
+        EXPECT_GT(result.force_mn[k], result.force_mn[k - 1]) << 0.5 * static_cast<double>(k) << " mm";
+}
+
 TEST(PushRig, WhatIsHeldNowhereOrHasNoSizeIsTold) {
     PushRig rig = held_tube(60.0);
     rig.held.clear();
