@@ -1,5 +1,6 @@
 // cathlab explain: from a recording to the effect that the model lacks.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include "commands.h"
 #include "core/errors.h"
 #include "explain/report.h"
+#include "explain/sensitivity.h"
 #include "explain_output.h"
 #include "progress.h"
 #include "scene/load_scene.h"
@@ -19,8 +21,34 @@ namespace {
 
 struct ExplainRequest {
     std::string dataset, out, scene;
+    bool sensitivity = false;
     ExplainOptions options;
 };
+
+/// Prints which effects such a recording could not tell apart.
+void print_sensitivity(ExplainRequest request) {
+    const Dataset data = read_dataset(request.dataset);
+    catch_stop_signals();
+    Progress progress("comparing");
+    request.options.on_progress = [&](double part) {
+        progress.update(part, "pairs of effects");
+        return !stop_wanted();
+    };
+    const Sensitivity found = sensitivity(data, request.options);
+    progress.end();
+    std::printf(
+        "Each effect made to do %g times the noise, with the inputs of this recording, and every other fitted to it.\n"
+        "left: part of the held-out error that the other one leaves; below %g the two are not told apart.\n\n",
+        found.response_over_noise, told_apart);
+    std::printf("  %-20s %-20s %s\n", "acts", "is fitted", "left");
+    constexpr std::size_t most = 20;
+    for (std::size_t k = 0;
+         k < std::min(most, found.pairs.size()) || (k < found.pairs.size() && found.pairs[k].left < told_apart); ++k)
+        std::printf("  %-20s %-20s %.3f%s\n", found.pairs[k].acting.c_str(), found.pairs[k].fitted.c_str(),
+                    found.pairs[k].left, found.pairs[k].left < told_apart ? "  not told apart" : "");
+    for (const std::string& name : found.taken_up) std::printf("  %s: taken up by the base model\n", name.c_str());
+    for (const std::string& name : found.too_weak) std::printf("  %s: too weak to be seen here\n", name.c_str());
+}
 
 void explain_dataset(ExplainRequest request, AppContext& context) {
     namespace fs = std::filesystem;
@@ -79,7 +107,14 @@ void add_explain_command(CLI::App& app, AppContext& context) {
     command->add_option("--seed", request->options.seed, "of the permutations")
         ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{9007199254740991}))
         ->capture_default_str();
-    command->callback([request, &context] { explain_dataset(*request, context); });
+    command->add_flag("--sensitivity", request->sensitivity,
+                      "print which effects such a recording could not tell apart, and write nothing");
+    command->callback([request, &context] {
+        if (request->sensitivity)
+            print_sensitivity(*request);
+        else
+            explain_dataset(*request, context);
+    });
 }
 
 }  // namespace cathlab
