@@ -129,5 +129,53 @@ TEST(WallEffects, AreTheSameInTheStepsAsInTheClosedForm) {
     compare("viscoelasticity", {0.8, 0.7, 2.0}, 0.05);
 }
 
+/// A ring of radius R, width w and thickness t under a pressure p = stress t / R, in tissue of k, which holds it along
+/// its axis too, so that its middle cannot narrow as it widens:
+///     u / R = stress / (E' + k R^2 / t),   E' = E (1 - nu^2 tanh(a) / a) / (1 - nu^2),   a = w/2 sqrt((1 - nu^2) k /
+///     (E t)).
+TEST(WallEffects, ARingInTissueWidensByWhatRingAndTissueBearTogether) {
+    WallRig rig;
+    rig.kind = RigKind::ring;
+    SceneWall scene;
+    scene.form = "elastic";
+    const Specimen specimen = make_specimen(rig, scene);
+    WallParameters parameters;
+    parameters.form = WallForm::elastic;
+    parameters.young_kpa = young_kpa;
+    parameters.poisson = poisson;
+    const SoftBodyModel wall = build_soft_body(specimen.sample, parameters, {});
+    const Gauge& gauge = specimen.gauges[0];
+    const Workers workers(1);
+    const auto strain = [&](double tissue, double stress) {
+        const auto effect = find_effect("tissue_support")->make(std::vector<double>{tissue});
+        std::vector<double> around(wall.size(), 0.0);
+        effect->surroundings({}, around);
+        SoftBodyState state = rest_state(wall);
+        SoftBodyScratch scratch;
+        for (std::size_t i = 0; i < wall.size(); ++i) scratch.support.push_back(around[i] * wall.area_mm2[i]);
+        std::vector<Vec3> force(wall.size());
+        for (std::size_t i = 0; i < force.size(); ++i) force[i] = stress * gauge.push[i];
+        for (int k = 0; k < 2000; ++k) {
+            predict(wall, state, scratch, h, force, workers);
+            solve_and_apply(wall, state, scratch, h, 2, workers);
+            finish(wall, state, scratch, h, workers);
+            if (specimen.guide) specimen.guide(state.x, state.v);
+            for (Vec3& v : state.v) v *= 0.97;
+        }
+        return gauge.strain(state.x);
+    };
+    const double r = gauge.radius_mm, t = gauge.thickness_mm, stress = 8.0, square = poisson * poisson;
+    const double bare = strain(0.0, stress), modulus = stress / bare;
+    EXPECT_NEAR(modulus, young_kpa, 0.03 * young_kpa);
+    double width = 0.0;
+    for (const Vec3& p : wall.rest) width = std::max(width, std::fabs(p.z() - wall.rest[0].z()));
+    for (const double tissue : {0.5, 2.0, 6.0}) {
+        const double a = 0.5 * width * std::sqrt((1.0 - square) * tissue / (modulus * t));
+        const double ring = modulus * (1.0 - square * std::tanh(a) / a) / (1.0 - square);
+        const double wanted = stress / (ring + tissue * r * r / t);
+        EXPECT_NEAR(strain(tissue, stress), wanted, 0.02 * wanted) << tissue;
+    }
+}
+
 }  // namespace
 }  // namespace cathlab
