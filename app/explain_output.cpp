@@ -64,6 +64,7 @@ Json result_of(const Dataset& data, const Explanation& found, const ExplainOptio
             {"effects", std::move(effects)},
             {"noise_floor_rms", number(found.noise_floor)},
             {"estimated_noise_rms", number(found.estimated_noise)},
+            {"model_error_rms", number(found.model_error)},
             {"train_rms_before", number(found.train_before)},
             {"train_rms_after", number(found.train_after)},
             {"held_out_rms_before", number(found.held_out_before)},

@@ -57,6 +57,25 @@ public:
 
     bool slow() const override { return true; }
 
+    /// What finer particles change of it: those finer still, and a solid wall in place of a shell, may change as much.
+    std::vector<double> own_error() const override {
+        std::vector<double> out;
+        for (const DataColumn* column : measured_) {
+            double square = 0.0, samples = 0.0;
+            for (std::size_t run = 0; run < pushes_.size(); ++run)
+                for (std::size_t k = 0; k < pushes_[run].ball_mm.size(); ++k) {
+                    const double off =
+                        column->quantity == "force"
+                            ? fine_[run].force_mn[k] - plain_[run].force_mn[k]
+                            : (fine_[run].marker_mm[k] - plain_[run].marker_mm[k])[column->quantity.back() - 'x'];
+                    square += off * off;
+                    samples += 1.0;
+                }
+            out.push_back(std::sqrt(square / samples));
+        }
+        return out;
+    }
+
     std::unique_ptr<RigMemory> memory() const override {
         auto out = std::make_unique<Memory>();
         for (std::size_t run = 0; run < pushes_.size(); ++run) {

@@ -173,6 +173,9 @@ std::vector<std::string> explain_sentences(const Dataset& data, const Explanatio
                   ". Held-out error " + number(found.held_out_before) + unit + " before, " +
                   number(found.held_out_after) + unit + " after; noise floor " + number(found.noise_floor) + unit +
                   (data.sensor_noise > 0.0 ? ", declared" : ", estimated from neighbouring rows") + ".");
+    if (found.model_error > 0.0)
+        out.push_back("The base model itself is off by about " + number(found.model_error) + unit +
+                      " (what finer particles change of it): no effect is named for less.");
     if (data.sensor_noise > 0.0)
         out.push_back("Differences of neighbouring rows of what is left say " + number(found.estimated_noise) + unit +
                       " of noise.");

@@ -79,6 +79,9 @@ public:
     /// Whether one model takes seconds: searches are then short.
     virtual bool slow() const { return false; }
 
+    /// By how much the base model itself is known to be off, root mean square a measured column; empty = it is exact.
+    virtual std::vector<double> own_error() const { return {}; }
+
     /// Whether each recording was taken at another place.
     virtual bool places_differ() const { return false; }
 

@@ -87,6 +87,11 @@ public:
         choose_candidates();
         FittedModel base = fitter_.begin(declared_, workers_);
         out_.split = split_;
+        own_error_ = rig_->own_error();
+        double square = 0.0;
+        const std::size_t judged = split_.judged > 0 ? std::min(split_.judged, own_error_.size()) : own_error_.size();
+        for (std::size_t c = 0; c < judged; ++c) square += own_error_[c] * own_error_[c] / static_cast<double>(judged);
+        out_.model_error = std::sqrt(square);
         out_.before = base.residual;
         out_.train_before = rms_of(base.residual, split_, 0);
         out_.held_out_before = rms_of(base.residual, split_, 1);
@@ -178,7 +183,7 @@ private:
             if (promising[k]->held_out_cost <= enough) next.push_back(std::move(promising[k]->model));
         kept_ = std::move(next);
         const double left = rms_of(best_.residual, split_, 1);
-        return !(left <= floor_factor * data_.sensor_noise);  // explained
+        return !(left <= floor_factor * std::hypot(data_.sensor_noise, out_.model_error));  // explained
     }
 
     void fit_all(std::vector<Child>& children) {
@@ -214,6 +219,8 @@ private:
             child.refused = "the held-out error does not fall by more than chance allows";
         else if (gain < least_gain)
             child.refused = "the held-out error falls by less than 1 %";
+        else if (!beyond_own_error(parent.residual, child.model.residual))
+            child.refused = "it explains less than the base model is itself off";
         else
             child.refused = why_no_effect(*trial, fitter_.free_parameters(*child.effect));
         constexpr double much = 0.03;
@@ -227,6 +234,16 @@ private:
                     child.refused = "of '" + spoken_name(*other.effect) + "' beside it " + why;
             }
         child.on_bound = child.refused.find("on a bound") != std::string::npos;
+    }
+
+    /// Whether a model is better than another, in some column, by more than the base model is itself off.
+    bool beyond_own_error(const Columns& before, const Columns& after) const {
+        if (own_error_.empty()) return true;
+        for (std::size_t c = 0; c < before.size(); ++c) {
+            const double b = rms(before[c], split_.held_out, 1), a = rms(after[c], split_.held_out, 1);
+            if (b * b - a * a > own_error_[c] * own_error_[c]) return true;
+        }
+        return false;
     }
 
     /// A sine that hardly comes round once within a recording is no oscillation: any curve is like a part of it.
@@ -336,7 +353,8 @@ private:
             const double gain = 1.0 - std::sqrt(mean_cost(best.residual, split_, 1, fitter_.scale()) /
                                                 mean_cost(without.residual, split_, 1, fitter_.scale()));
             const std::string none = why_no_effect(best.effects[k], fitter_.free_parameters(*effect));
-            if (p >= significant || gain < 0.5 * least_gain || !none.empty()) {
+            if (p >= significant || gain < 0.5 * least_gain || !none.empty() ||
+                !beyond_own_error(without.residual, best.residual)) {
                 row_of(*effect).refused_because =
                     none.empty() ? "no longer needed beside the others" : none + " beside the others";
                 best = without;
@@ -377,7 +395,7 @@ private:
         out_.estimated_noise = noise_of(data_, best.residual, split_.judged);
         out_.noise_floor = data_.sensor_noise > 0.0 ? data_.sensor_noise : out_.estimated_noise;
         fitter_.weigh_by(best);
-        const bool noise_only = out_.held_out_after <= floor_factor * out_.noise_floor;
+        const bool noise_only = out_.held_out_after <= floor_factor * std::hypot(out_.noise_floor, out_.model_error);
         if (out_.effects.empty())
             out_.verdict = noise_only ? Verdict::nothing_missing : Verdict::unexplained;
         else
@@ -397,6 +415,7 @@ private:
     std::vector<const EffectInfo*> declared_, tried_;
     FittedModel best_;               ///< that may be named
     std::vector<FittedModel> kept_;  ///< from which the next round begins
+    std::vector<double> own_error_;  ///< of the rig
     std::string plain_better_;
     int round_ = 0;
     Explanation out_;

@@ -41,6 +41,7 @@ struct Explanation {
     std::vector<FittedEffect> effects;  ///< what helps most first
     NamedNumbers base_parameters;
     double noise_floor = 0.0;      ///< as declared, otherwise as estimated; root mean square a measured column
+    double model_error = 0.0;      ///< by which the base model itself is known to be off; 0 = it is exact
     double estimated_noise = 0.0;  ///< from differences of neighbours of what is left
     double train_before = 0.0, train_after = 0.0, held_out_before = 0.0, held_out_after = 0.0;
     std::vector<Candidate> candidates;
@@ -65,7 +66,8 @@ struct ExplainOptions {
 /// that applies to the kind is fitted inside the model on the same rows, beside what the three best models so far
 /// hold.  It is taken when the held-out error falls by more than flipped signs of whole blocks would give by chance
 /// (p, times the number of tries, below 0.01) and by 1 % of itself at least, by more than a plain sine or step without
-/// a mechanism, when its strength is not zero and no parameter ends on a bound of its range.  What is no longer needed
+/// a mechanism, by more in some column than the base model is itself known to be off, when its strength is not zero and
+/// no parameter ends on a bound of its range.  What is no longer needed
 /// beside later ones is dropped.  Throws UserError for kinds without a rig and for data that do not determine the base
 /// model.
 Explanation explain(const Dataset& data, const ExplainOptions& options = {});
