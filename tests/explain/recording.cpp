@@ -62,6 +62,9 @@ std::unique_ptr<Folder> record_heart(const Recipe& r) {
             if (acts("respiration")) more = 0.9 * size * breath(t / 4.3 + turn);
             if (acts("baseline-wander")) more = 0.5 * size * std::sin(2.0 * pi * (t / 13.0 + turn));
             if (acts("sensor-drift")) more = 2.0 * size * t / 60.0;
+            if (acts("regional-motion"))  // every place goes its own way beside the others
+                more = (run == 0 ? 0.5 : -0.3) * size * std::sin(2.0 * pi * (phase - 0.1)) +
+                       (run == 0 ? -0.2 : 0.45) * size * std::cos(4.0 * pi * phase);
             if (acts("vibration")) more = 0.4 * size * std::sin(2.0 * pi * t / 0.31);
             if (acts("step") && run == 1 && 2 * i > rows) more = 1.0 * size;
             if (acts("outliers") && uniform(random) < 0.03) more = 3.0 * size * normal(random);
@@ -179,7 +182,7 @@ std::unique_ptr<Folder> record(const Recipe& recipe) {
 const std::vector<std::string>& known_effects(const std::string& kind) {
     static const std::vector<std::string> heart{"respiration",     "alternans",        "ectopic-beats",
                                                 "amplitude-drift", "rate-variability", "baseline-wander",
-                                                "sensor-drift"};
+                                                "sensor-drift",    "regional-motion"};
     static const std::vector<std::string> catheter{
         "backlash",     "hysteresis",     "actuation-lag",   "segment-coupling", "actuation-gain",
         "gravity-sag",  "rest-memory",    "respiration",     "sensor-latency",   "registration",
@@ -187,8 +190,8 @@ const std::vector<std::string>& known_effects(const std::string& kind) {
     static const std::vector<std::string> tension{"stiffening", "viscoelasticity", "softening",
                                                   "slack",      "creep",           "boundary-slip"};
     static const std::vector<std::string> tendons{
-        "backlash",    "hysteresis",     "actuation-lag", "segment-coupling", "tendon-routing",
-        "rest-memory", "sensor-latency", "sensor-drift",  "curvature-taper",  "field-distortion"};
+        "backlash",       "hysteresis",   "actuation-lag",   "segment-coupling", "tendon-routing", "rest-memory",
+        "sensor-latency", "sensor-drift", "curvature-taper", "field-distortion", "tendon-stretch"};
     if (kind == "wall-tension") return tension;
     if (kind == "tendon-tip") return tendons;
     return kind == "heart-motion" ? heart : catheter;

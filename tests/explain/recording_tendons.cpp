@@ -30,6 +30,39 @@ V robot_tip(const std::array<B, 3>& bends, double taper) {
     return at;
 }
 
+/// Where springs come to rest: a segment's own, and tendons of the same stiffness that run through all segments up to
+/// theirs, hold by one another's tightness and go slack when they are let go.  One bend after another, each moved to
+/// where its own pull vanishes.
+std::array<B, 3> springs_at_rest(const std::array<B, 3>& wanted, const double* first, double give, double tight) {
+    struct Spring {
+        int up_to;
+        double x, y, pulled;
+    };
+    std::vector<Spring> springs;
+    for (int s = 0; s < 3; ++s)
+        for (int k = 0; k < 3; ++k) {
+            const double place = (first[s] + 120.0 * k) * rad, x = std::cos(place), y = std::sin(place);
+            springs.push_back({s, x, y, wanted[s][0] * x + wanted[s][1] * y + tight});
+        }
+    std::array<B, 3> b{};
+    for (int round = 0; round < 400; ++round)
+        for (int s = 0; s < 3; ++s)
+            for (int a = 0; a < 2; ++a) {
+                double pull = -give * b[s][a], stiff = give;
+                for (const Spring& spring : springs) {
+                    if (spring.up_to < s) continue;
+                    double bent = 0.0;
+                    for (int k = 0; k <= spring.up_to; ++k) bent += spring.x * b[k][0] + spring.y * b[k][1];
+                    if (bent >= spring.pulled) continue;
+                    const double along = a == 0 ? spring.x : spring.y;
+                    pull += along * (spring.pulled - bent);
+                    stiff += along * along;
+                }
+                b[s][a] += pull / stiff;
+            }
+    return b;
+}
+
 }  // namespace
 
 std::unique_ptr<Folder> record_tendons(const Recipe& r) {
@@ -109,6 +142,11 @@ std::unique_ptr<Folder> record_tendons(const Recipe& r) {
                         }
                 for (int s = 0; s < 3; ++s)
                     for (int a = 0; a < 2; ++a) q[s][a] += 0.35 * size * (b[s][a] - wanted[s][a]);
+            }
+            if (acts("tendon-stretch") && i % fine == 0) {
+                const std::array<B, 3> b = springs_at_rest(wanted, first, 0.4, 0.05);
+                for (int s = 0; s < 3; ++s)
+                    for (int a = 0; a < 2; ++a) q[s][a] += 0.3 * size * (b[s][a] - wanted[s][a]);
             }
             last = wanted;
             if (acts("sensor-latency")) seen.push_back(robot_tip(q, 0.0));
