@@ -2,7 +2,8 @@
 // is taken away before the elastic law sees it [fung1993],
 //     e_elastic = e - clamp(e, 0, strain),
 // for a wall in folds or a strip that hangs between its grips.  strain < 0: the same in compression, as of a specimen
-// that its platens do not touch yet.
+// that its platens do not touch yet.  `remnant` of the wall's stiffness stays within the slack: what it takes to unfold
+// it, and nothing can be solved without any.
 #include <algorithm>
 #include <cmath>
 
@@ -11,12 +12,9 @@
 namespace cathlab {
 namespace {
 
-// Within the slack so much of the wall's stiffness stays: nothing can be solved without any.
-constexpr double remnant = 1e-3;
-
 class Slack final : public Effect {
 public:
-    explicit Slack(double strain) : strain_(strain) {}
+    Slack(double strain, double remnant) : strain_(strain), remnant_(remnant) {}
 
     void strain(const EffectContext& /*context*/, MembranePoint& point) override {
         if (strain_ == 0.0) return;
@@ -32,9 +30,9 @@ public:
 
 private:
     double taken(double e) const {
-        return (1.0 - remnant) * std::clamp(e, std::min(0.0, strain_), std::max(0.0, strain_));
+        return (1.0 - remnant_) * std::clamp(e, std::min(0.0, strain_), std::max(0.0, strain_));
     }
-    double strain_;
+    double strain_, remnant_;
 };
 
 }  // namespace
@@ -48,9 +46,13 @@ EffectInfo slack_effect() {
         .for_tests = false,
         .applies_to = {"wall-tension", "wall-contact"},
         .parameters = {{"strain", "1", 0.03, -0.3, 0.3,
-                        "Green's strain at which it is straight; below 0: in compression"}},
+                        "Green's strain at which it is straight; below 0: in compression"},
+                       {"remnant", "1", 0.001, 0.001, 0.5, "of the stiffness, that stays while it is slack"}},
         .strengths = {"strain"},
-        .make = [](std::span<const double> p) -> std::unique_ptr<Effect> { return std::make_unique<Slack>(p[0]); },
+        .meant_ends = {"remnant"},
+        .make = [](std::span<const double> p) -> std::unique_ptr<Effect> {
+            return std::make_unique<Slack>(p[0], p[1]);
+        },
         .elastic_wall = true,
     };
 }

@@ -78,11 +78,13 @@ TEST(Wall, HookesLawIsAStraightLineInStretches) {
 }
 
 TEST(Wall, ASlackWallBearsNothingUntilItIsStraight) {
-    Point point("slack", {0.1});
+    Point point("slack", {0.1, 0.001});
     EXPECT_NEAR(point.at(std::sqrt(1.19), 1.0).stress[0], 0.0, 0.1);
     const double c = 1.5, taken = c - 2.0 * 0.1;  // the other stretch is shorter than at rest: no slack there
     const MembranePoint found = point.at(std::sqrt(c), 0.9);
     EXPECT_NEAR(found.stress[0], elastic(std::sqrt(taken), 0.9).stress[0], 0.1);
+    Point firm("slack", {0.1, 0.2});
+    EXPECT_NEAR(firm.at(std::sqrt(1.1), 0.9).stress[0], elastic(std::sqrt(1.0 + 0.2 * 0.1), 0.9).stress[0], 1e-9);
     // Pressed, it is as it was.
     EXPECT_NEAR(point.at(0.9, 0.9).stress[0], elastic(0.9, 0.9).stress[0], 1e-9);
 }
