@@ -173,7 +173,8 @@ private:
         if (!accepted.empty() && !beats_plain_shapes(*accepted[0])) accepted.clear();
         note(children, accepted);
         if (!accepted.empty()) find_equals(accepted);
-        if (promising.empty() || (accepted.empty() && !plain_better_.empty())) return false;
+        // Where a model takes seconds only what was found is gone on from.
+        if (promising.empty() || (accepted.empty() && (rig_->slow() || !plain_better_.empty()))) return false;
         // Those that are far behind the best will not overtake it.
         const double before = mean_cost(kept_[0].residual, split_, 1, fitter_.scale());
         const double enough = before - 0.5 * (before - promising[0]->held_out_cost);
