@@ -11,6 +11,8 @@
 namespace cathlab {
 namespace {
 
+constexpr std::size_t few = 2;  // base numbers
+
 bool is_strength(const EffectInfo& effect, const Parameter& p) {
     return std::find(effect.strengths.begin(), effect.strengths.end(), p.key) != effect.strengths.end();
 }
@@ -38,8 +40,9 @@ private:
 };
 
 /// Other numbers for what only shapes an effect: near each end of the range of one of them, then all spread over their
-/// ranges.  False where there are no more.
-bool reshape(const EffectInfo& effect, const std::vector<bool>& free, int number, std::vector<double>& values) {
+/// ranges: many ways where a rig is quick and they are more than two.  False where there are no more.
+bool reshape(const EffectInfo& effect, const std::vector<bool>& free, int number, bool quick,
+             std::vector<double>& values) {
     std::vector<std::size_t> shapes;
     for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
         const Parameter& p = effect.parameters[k];
@@ -47,7 +50,7 @@ bool reshape(const EffectInfo& effect, const std::vector<bool>& free, int number
             shapes.push_back(k);
     }
     const int single = 2 * static_cast<int>(shapes.size());
-    const int spread = shapes.size() > 2 ? 12 : 2;  // shapes in which all differ
+    const int spread = quick && shapes.size() > 2 ? 12 : 2;  // shapes in which all differ
     if (shapes.empty() || number > single + spread) return false;
     for (std::size_t j = 0; j < shapes.size(); ++j) {
         const Parameter& p = effect.parameters[shapes[j]];
@@ -293,7 +296,7 @@ bool Fitter::learn(const EffectInfo& effect) {
     }
     for (int shape = 0;; ++shape) {
         std::vector<double> usual = acting(effect);
-        if (shape > 0 && (!reshape(effect, may, shape, usual) || out == may)) break;
+        if (shape > 0 && (!reshape(effect, may, shape, false, usual) || out == may)) break;
         const Columns there = residual(usual);
         for (std::size_t k = 0; k < count; ++k) {
             const Parameter& p = effect.parameters[k];
@@ -315,6 +318,10 @@ bool Fitter::learn(const EffectInfo& effect) {
     const bool any = std::find(out.begin(), out.end(), true) != out.end();
     free_[&effect] = std::move(out);
     return any;
+}
+
+bool Fitter::quick() const {
+    return rig_.bounds().size() <= few && !rig_.bounds().empty() && !rig_.slow();
 }
 
 std::vector<std::vector<double>> Fitter::starts(const FittedModel& from, const EffectInfo& effect) const {
@@ -347,7 +354,7 @@ std::vector<std::vector<double>> Fitter::starts(const FittedModel& from, const E
             std::vector<double> any;
             for (std::size_t level = 0; level < plain; ++level) {
                 std::vector<double> values = levels[level];
-                if (!reshape(effect, free, other, values)) break;
+                if (!reshape(effect, free, other, quick(), values)) break;
                 any = values;
                 levels.push_back(std::move(values));
             }
@@ -398,9 +405,8 @@ FittedModel Fitter::beside(const FittedModel& from, const EffectTrial& trial) co
 
 FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) const {
     // Base numbers that are few go along from the beginning; where they are many, the effect looks where to go first.
-    constexpr std::size_t few = 2;
     const bool base_too = rig_.bounds().size() <= few;
-    const bool shaped = base_too && !rig_.bounds().empty() && !rig_.slow();
+    const bool shaped = quick();
     const std::size_t searched = rig_.slow() ? 1 : shaped ? 12 : 2;  // of each way
     std::vector<FittedModel> tried[2];
     const std::vector<double> usual = defaults(effect);

@@ -48,6 +48,8 @@ public:
 
 private:
     double cost_of(const FittedModel& model) const;
+    /// A rig of few base numbers whose models take no time: shapes are searched together with the base numbers.
+    bool quick() const;
     /// The model's numbers with one effect more; nothing fitted yet.
     FittedModel beside(const FittedModel& from, const EffectTrial& trial) const;
     /// The effect with its phase, in each run, where it helps most.
