@@ -273,6 +273,10 @@ std::unique_ptr<World> build_world(const SceneSpec& spec, const BuildOptions& op
     return build_world(spec, *build_models(spec, options), spec.seed, options.threads);
 }
 
+const AnatomyModel& anatomy_of(const SceneModels& models) {
+    return *models.anatomy;
+}
+
 std::uint64_t anatomy_hash(const SceneModels& models) {
     return models.anatomy->content_hash;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "anatomy/model.h"
 #include "scene/scene_spec.h"
 #include "world/world.h"
 
@@ -28,7 +29,10 @@ std::unique_ptr<World> build_world(const SceneSpec& spec, const SceneModels& mod
 /// Both in one.
 std::unique_ptr<World> build_world(const SceneSpec& spec, const BuildOptions& options);
 
-/// Content hash of the anatomy in the models.
+/// The anatomy in the models; it lives as long as they do.
+const AnatomyModel& anatomy_of(const SceneModels& models);
+
+/// Its content hash.
 std::uint64_t anatomy_hash(const SceneModels& models);
 
 }  // namespace cathlab
