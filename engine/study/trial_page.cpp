@@ -11,7 +11,8 @@
 namespace cathlab {
 namespace {
 
-constexpr double margin_mm = 12.0;
+constexpr double margin_mm = 12.0;  // round the vessels ...
+constexpr double around_mm = 70.0;  // ... of which so much is shown round the tip's way
 constexpr double force_width = 720.0, force_height = 120.0, force_most = 1.5;  // px, px, of the limit
 
 constexpr const char* style = R"css(
@@ -89,16 +90,22 @@ struct Window {
         low_y = std::min(low_y, -p.z() - r);
         high_y = std::max(high_y, -p.z() + r);
     }
+    Window within(const Window& other) const {
+        return {std::max(low_x, other.low_x), std::max(low_y, other.low_y), std::min(high_x, other.high_x),
+                std::min(high_y, other.high_y)};
+    }
 };
 
 std::string view_of(int view, const char* name, const CentrelineGraph& vessels, std::span<const TrialFrame> frames) {
-    Window window;
-    for (const CentrelineNode& node : vessels.nodes) window.add(node.position, node.radius, view);
-    for (const TrialFrame& f : frames) window.add(f.tip, 1.0, view);
-    std::string out = "<figure><svg viewBox=\"" + fixed(window.low_x - margin_mm, 1) + " " +
-                      fixed(window.low_y - margin_mm, 1) + " " +
-                      fixed(window.high_x - window.low_x + 2.0 * margin_mm, 1) + " " +
-                      fixed(window.high_y - window.low_y + 2.0 * margin_mm, 1) +
+    Window all, near;
+    for (const CentrelineNode& node : vessels.nodes) all.add(node.position, node.radius + margin_mm, view);
+    for (const TrialFrame& f : frames) {
+        all.add(f.tip, 1.0, view);
+        near.add(f.tip, around_mm, view);
+    }
+    const Window window = near.within(all);
+    std::string out = "<figure><svg viewBox=\"" + fixed(window.low_x, 1) + " " + fixed(window.low_y, 1) + " " +
+                      fixed(window.high_x - window.low_x, 1) + " " + fixed(window.high_y - window.low_y, 1) +
                       "\" role=\"img\"><g stroke=\"#e3c9c9\" stroke-linecap=\"round\">\n";
     for (const auto& [a, b] : vessels.edges) {
         const CentrelineNode& from = vessels.nodes[static_cast<std::size_t>(a)];
