@@ -74,7 +74,11 @@ void RunWriter::step(std::int64_t step, const Channels& channels, const std::vec
                           {"entity", e.entity},
                           {"message", e.message},
                           {"value", e.value}}));
-    if ((step + 1) % flush_interval == 0) flush();
+    if (flushes(step)) flush();
+}
+
+bool RunWriter::flushes(std::int64_t step) {
+    return (step + 1) % flush_interval == 0;
 }
 
 void RunWriter::flush() {

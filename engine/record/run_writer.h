@@ -28,6 +28,8 @@ public:
     void step(std::int64_t step, const Channels& channels, const std::vector<Event>& events);
     /// Hands over to the system what a crash of this process would lose.
     void flush();
+    /// Whether step() flushes after the step of this index.
+    static bool flushes(std::int64_t step);
     /// After `steps` steps; written if steps is a multiple of hash_interval or `last`.
     static bool wants_hash(std::int64_t steps) { return steps % hash_interval == 0; }
     void hash(std::int64_t steps, const World::StateHash& hash);
