@@ -22,25 +22,6 @@ void describe_solids(const AnatomyModel& anatomy, FrameDescription& frame) {
     }
 }
 
-// On the edges of the nearest node the place nearest to p: a front that runs along the vessel then lies straight across
-// it, whatever its triangles.
-FrameMemory::Along along_centreline(const CentrelineGraph& graph, const std::vector<std::vector<Index>>& neighbours,
-                                    const Vec3& p) {
-    const Index node = graph.nearest(p);
-    const Vec3& from = graph.nodes[static_cast<std::size_t>(node)].position;
-    FrameMemory::Along best{node, node, 0.0};
-    double least = (p - from).squaredNorm();
-    for (const Index next : neighbours[static_cast<std::size_t>(node)]) {
-        const Vec3 way = graph.nodes[static_cast<std::size_t>(next)].position - from;
-        const double share = std::clamp((p - from).dot(way) / std::max(1e-12, way.squaredNorm()), 0.0, 1.0);
-        const double off = (p - from - share * way).squaredNorm();
-        if (off >= least) continue;
-        least = off;
-        best = {node, next, share};
-    }
-    return best;
-}
-
 void describe_contrast(const FrameStage& stage, const std::vector<double>& concentration, FrameMemory& memory,
                        FrameLumen& lumen) {
     if (concentration.empty()) {
@@ -49,20 +30,11 @@ void describe_contrast(const FrameStage& stage, const std::vector<double>& conce
     }
     const AnatomyModel& anatomy = *stage.anatomy;
     const std::vector<Vec3>& vertices = anatomy.lumen.vertices;
-    if (memory.along.size() != vertices.size()) {
-        const auto neighbours = anatomy.centreline.adjacency();
-        memory.along.resize(vertices.size());
-        stage.workers->for_ranges(vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                memory.along[i] = along_centreline(anatomy.centreline, neighbours, vertices[i]);
-        });
-    }
+    if (memory.along.size() != vertices.size())
+        memory.along = along_vessels(anatomy.centreline, vertices, anatomy.lumen_region, *stage.workers);
     lumen.contrast_mg_ml.resize(vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const FrameMemory::Along& a = memory.along[i];
-        lumen.contrast_mg_ml[i] = (1.0 - a.share) * concentration[static_cast<std::size_t>(a.from)] +
-                                  a.share * concentration[static_cast<std::size_t>(a.to)];
-    }
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        lumen.contrast_mg_ml[i] = concentration_at(memory.along[i], concentration);
 }
 
 void describe_lumen(const FrameStage& stage, const ScenePoses& poses, FrameMemory& memory, FrameLumen& lumen) {
@@ -70,6 +42,7 @@ void describe_lumen(const FrameStage& stage, const ScenePoses& poses, FrameMemor
     if (lumen.topology_revision == 0) {
         lumen.topology_revision = 1;
         lumen.triangles = stage.anatomy->lumen.triangles;
+        lumen.radius_mm = stage.anatomy->lumen_radius;
     }
     const auto& rest = stage.anatomy->lumen.vertices;
     lumen.displacement_mm.resize(rest.size());

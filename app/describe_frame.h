@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "contrast/along.h"
 #include "core/channels.h"
 #include "render/frame_description.h"
 #include "scene/scene_spec.h"
@@ -14,13 +15,7 @@ namespace cathlab {
 
 /// What is the same in all frames of a run and takes a while to find.
 struct FrameMemory {
-    /// Where each vertex of the lumen at rest stands along the centre-line: between two neighbours, at this share of
-    /// the way from the first.
-    struct Along {
-        Index from = 0, to = 0;
-        double share = 0.0;
-    };
-    std::vector<Along> along;
+    std::vector<AlongVessel> along;  ///< of each vertex of the lumen at rest
 };
 
 /// Fills everything but size, seed, frame_index and overlay.  Give the same objects for every frame of a run: meshes

@@ -13,6 +13,20 @@ namespace {
 // So far behind its mouth a guiding catheter gives way to the ostium's motion.
 constexpr double guide_bends_mm = 60.0;
 
+// A guiding catheter does not follow the corners of a centre-line where a branch begins.
+std::vector<Vec3> rounded(std::vector<Vec3> points) {
+    constexpr int passes = 80;  // of weights 1/4, 1/2, 1/4: together a Gaussian of sqrt(passes / 2) points
+    for (int pass = 0; pass < passes; ++pass) {
+        Vec3 before = points.front();
+        for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+            const Vec3 here = points[i];
+            points[i] = 0.25 * before + 0.5 * here + 0.25 * points[i + 1];
+            before = here;
+        }
+    }
+    return points;
+}
+
 // A guided wire is drawn on through the guiding catheter, whose own wall is not drawn.
 DevicePose wire_pose(const Rod& wire, const GuidePath* guide) {
     DevicePose out;
@@ -26,9 +40,10 @@ DevicePose wire_pose(const Rod& wire, const GuidePath* guide) {
     if (!guide) return out;
     const Vec3 moved = wire.sheath().mouth.position - guide->points.front();
     double behind = 0.0;
-    for (std::size_t i = 0; i < guide->points.size(); ++i) {
-        if (i > 0) behind += (guide->points[i] - guide->points[i - 1]).norm();
-        out.points.push_back(guide->points[i] + std::max(0.0, 1.0 - behind / guide_bends_mm) * moved);
+    const std::vector<Vec3> path = rounded(guide->points);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        if (i > 0) behind += (path[i] - path[i - 1]).norm();
+        out.points.push_back(path[i] + std::max(0.0, 1.0 - behind / guide_bends_mm) * moved);
         out.radius_mm.push_back(out.radius_mm.back());
         out.material_of.push_back(out.material_of.back());
     }

@@ -86,6 +86,45 @@ TEST_F(Render, APictureFromThePosesIsThePictureOfTheStep) {
     EXPECT_EQ(fs::file_size(folder_.path("poses.dcm")), fs::file_size(folder_.path("steps.dcm")));
 }
 
+TEST_F(Render, WhatNoPictureCanBeMadeOfIsToldBeforeTheFirst) {
+    ASSERT_EQ(run("--video none --poses 15").code, 0);
+    const std::string film = folder_.path("film/fluoro.mp4");
+    const std::vector<std::pair<std::string, std::string>> wrong{
+        {"--sid 900 --sod 950", "sod_mm: found 950"},
+        {"--field-of-view 0", "--field-of-view"},
+        {"--primary 200", "--primary"},
+        {"--sid nan", "sid"},
+        {"--isocentre 0 -1500 0 --primary 0 --beam-on", "behind the X-ray source"},
+        {"--codec h265", "there is no codec 'h265'; known are h264, mpeg4, ffv1"},
+        {"--codec ffv1", "goes into a file .avi"},
+        {"--detector film", "--detector"},
+        {"--view sideways", "--view"},
+        {"--video /dev/full/film.mp4", "/dev/full"},
+    };
+    for (const auto& [options, sentence] : wrong) {
+        const Outcome outcome = render("film", options);
+        EXPECT_NE(outcome.code, 0) << options;
+        EXPECT_NE(outcome.text.find(sentence), std::string::npos) << options << ": " << outcome.text;
+        EXPECT_TRUE(fs::is_empty(folder_.path("film"))) << options;
+        fs::remove_all(folder_.path("film"));
+        fs::create_directory(folder_.path("film"));
+    }
+    EXPECT_EQ(call("render " + run_ + " --size 511x512 --out " + folder_.path("film")).code, 2);
+}
+
+// All of the demo: `cathlab run scenes/demo.toml --out DIR`, then the render of below with --fps 15.
+TEST_F(Render, EveryRayOfTheDemoLeavesWhatItEnters) {
+    scene_ = std::string(CATHLAB_SOURCE_DIR) + "/scenes/demo.toml";
+    ASSERT_EQ(call("run " + scene_ + " --seconds 5 --video none --poses 2 --threads 2 --out " + run_).code, 0);
+    for (const char* angles : {"", " --primary 40 --secondary -30"}) {
+        const Outcome seen = call("render " + run_ + " --video none --still " + folder_.path("a.png") +
+                                  " --beam-on --fps 2 --size 512x512 --fluoroscopy-alone" + angles);
+        EXPECT_EQ(seen.code, 0) << seen.text;
+        EXPECT_NE(seen.text.find("11 pictures of 250 steps"), std::string::npos) << seen.text;
+        EXPECT_EQ(seen.text.find("open surfaces"), std::string::npos) << seen.text;
+    }
+}
+
 TEST_F(Render, WithoutPosesTheRunIsSteppedAgainAndASentenceSaysSo) {
     ASSERT_EQ(run("--video none").code, 0);
     EXPECT_FALSE(fs::exists(run_ + "/poses.bin"));
