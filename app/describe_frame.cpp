@@ -3,16 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "beam/exposure.h"
-#include "contrast/transport.h"
-#include "core/units.h"
-#include "step/parts.h"
+#include "world/step_settings.h"
 
 namespace cathlab {
 namespace {
-
-// So far behind its mouth a guiding catheter gives way to the ostium's motion.
-constexpr double guide_bends_mm = 60.0;
 
 void describe_solids(const AnatomyModel& anatomy, FrameDescription& frame) {
     if (frame.solids_revision != 0) return;
@@ -28,114 +22,50 @@ void describe_solids(const AnatomyModel& anatomy, FrameDescription& frame) {
     }
 }
 
-// On the edges of the nearest node the place nearest to p: a front that runs along the vessel then lies straight across
-// it, whatever its triangles.
-FrameMemory::Along along_centreline(const CentrelineGraph& graph, const std::vector<std::vector<Index>>& neighbours,
-                                    const Vec3& p) {
-    const Index node = graph.nearest(p);
-    const Vec3& from = graph.nodes[static_cast<std::size_t>(node)].position;
-    FrameMemory::Along best{node, node, 0.0};
-    double least = (p - from).squaredNorm();
-    for (const Index next : neighbours[static_cast<std::size_t>(node)]) {
-        const Vec3 way = graph.nodes[static_cast<std::size_t>(next)].position - from;
-        const double share = std::clamp((p - from).dot(way) / std::max(1e-12, way.squaredNorm()), 0.0, 1.0);
-        const double off = (p - from - share * way).squaredNorm();
-        if (off >= least) continue;
-        least = off;
-        best = {node, next, share};
-    }
-    return best;
-}
-
-void describe_contrast(const World& world, const AnatomyModel& anatomy, FrameMemory& memory, FrameLumen& lumen) {
-    const auto* contrast = world.first<ContrastState>();
-    if (contrast == nullptr) return;
-    const auto& concentration = contrast->concentration;
-    if (std::all_of(concentration.begin(), concentration.end(), [](double c) { return c <= 0.0; })) {
+void describe_contrast(const FrameStage& stage, const std::vector<double>& concentration, FrameMemory& memory,
+                       FrameLumen& lumen) {
+    if (concentration.empty()) {
         lumen.contrast_mg_ml.clear();
         return;
     }
+    const AnatomyModel& anatomy = *stage.anatomy;
     const std::vector<Vec3>& vertices = anatomy.lumen.vertices;
-    if (memory.along.size() != vertices.size()) {
-        const auto neighbours = anatomy.centreline.adjacency();
-        memory.along.resize(vertices.size());
-        world.workers().for_ranges(vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                memory.along[i] = along_centreline(anatomy.centreline, neighbours, vertices[i]);
-        });
-    }
+    if (memory.along.size() != vertices.size())
+        memory.along = along_vessels(anatomy.centreline, vertices, anatomy.lumen_region, *stage.workers);
     lumen.contrast_mg_ml.resize(vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const FrameMemory::Along& a = memory.along[i];
-        lumen.contrast_mg_ml[i] = (1.0 - a.share) * concentration[static_cast<std::size_t>(a.from)] +
-                                  a.share * concentration[static_cast<std::size_t>(a.to)];
-    }
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        lumen.contrast_mg_ml[i] = concentration_at(memory.along[i], concentration);
 }
 
-void describe_lumen(const Parts& parts, FrameMemory& memory, FrameLumen& lumen) {
-    lumen.vertices = parts.surface_state->vertices;
+void describe_lumen(const FrameStage& stage, const ScenePoses& poses, FrameMemory& memory, FrameLumen& lumen) {
+    lumen.vertices = poses.lumen;
     if (lumen.topology_revision == 0) {
         lumen.topology_revision = 1;
-        lumen.triangles = parts.surface->triangles;
+        lumen.triangles = stage.anatomy->lumen.triangles;
+        lumen.radius_mm = stage.anatomy->lumen_radius;
     }
-    const auto& rest = parts.anatomy->lumen.vertices;
+    const auto& rest = stage.anatomy->lumen.vertices;
     lumen.displacement_mm.resize(rest.size());
     for (std::size_t i = 0; i < rest.size(); ++i)
         lumen.displacement_mm[i] = std::sqrt((lumen.vertices[i] - rest[i]).squaredNorm());
-    // A triangle's contact force colours its three corners.
-    std::vector<Vec3> force_mn(lumen.triangles.size(), Vec3::Zero());
-    parts.contacts->add_triangle_forces(force_mn);
     lumen.wall_force_n.assign(rest.size(), 0.0);
-    for (std::size_t t = 0; t < force_mn.size(); ++t) {
-        if (force_mn[t].isZero()) continue;
-        const double newtons = std::sqrt(force_mn[t].squaredNorm()) / units::newton;
-        for (const Index corner : lumen.triangles[t]) lumen.wall_force_n[static_cast<std::size_t>(corner)] += newtons;
-    }
-    describe_contrast(*parts.world, *parts.anatomy, memory, lumen);
+    for (const auto& [vertex, newtons] : poses.wall_force_n)
+        lumen.wall_force_n[static_cast<std::size_t>(vertex)] = newtons;
+    describe_contrast(stage, poses.contrast_mg_ml, memory, lumen);
 }
 
-std::uint8_t material_index(FrameDevice& device, const std::string& name) {
-    const auto it = std::find(device.materials.begin(), device.materials.end(), name);
-    const auto index = static_cast<std::uint8_t>(it - device.materials.begin());
-    if (it == device.materials.end()) device.materials.push_back(name);
-    return index;
-}
-
-// A guided wire is drawn on through the guiding catheter, whose own wall is not drawn.
-FrameDevice describe_wire(const Rod& wire, const GuidePath* guide) {
-    FrameDevice out;
-    out.name = wire_entity;
-    out.points = wire.polyline();
-    if (guide) out.points.resize(wire.free_link_count() + 1);
-    for (std::size_t i = 0; i + 1 < out.points.size(); ++i) {
-        out.radius_mm.push_back(wire.link_radius(i));
-        out.material_of.push_back(material_index(out, wire.material(i)));
+void describe_devices(const std::vector<DevicePose>& devices, std::vector<FrameDevice>& out) {
+    out.clear();
+    for (const DevicePose& device : devices) {
+        FrameDevice& drawn = out.emplace_back();
+        drawn.name = device.name;
+        drawn.points = device.points;
+        drawn.radius_mm = device.radius_mm;
+        drawn.inner_radius_mm = device.inner_radius_mm;
+        drawn.materials = device.materials;
+        drawn.material_of = device.material_of;
+        if (device.name == catheter_entity) drawn.color = Vec3(0.25, 0.45, 0.75);
     }
-    if (!guide) return out;
-    const Vec3 moved = wire.sheath().mouth.position - guide->points.front();
-    double behind = 0.0;
-    for (std::size_t i = 0; i < guide->points.size(); ++i) {
-        if (i > 0) behind += (guide->points[i] - guide->points[i - 1]).norm();
-        out.points.push_back(guide->points[i] + std::max(0.0, 1.0 - behind / guide_bends_mm) * moved);
-        out.radius_mm.push_back(out.radius_mm.back());
-        out.material_of.push_back(out.material_of.back());
-    }
-    return out;
-}
-
-FrameDevice describe_catheter(const CatheterSpec& spec, const CatheterShape& shape) {
-    FrameDevice out;
-    out.name = catheter_entity;
-    out.points = shape.points;
-    out.color = Vec3(0.25, 0.45, 0.75);
-    const double band = shape.arc.back() - spec.tip_marker_length_mm;
-    for (std::size_t i = 0; i + 1 < out.points.size(); ++i) {
-        out.radius_mm.push_back(spec.radius_mm());
-        out.inner_radius_mm.push_back(0.5 * spec.inner_diameter_mm);
-        const bool marker = 0.5 * (shape.arc[i] + shape.arc[i + 1]) >= band;
-        out.material_of.push_back(material_index(out, marker ? spec.tip_material : spec.material));
-    }
-    return out;
 }
 
 // The camera keeps its roll: the old right-hand axis, made square to the new direction.
@@ -149,19 +79,11 @@ Pose camera_pose(const Vec3& position, const Vec3& forward, const std::optional<
     return {position, Quat(axes)};
 }
 
-// From the tip of whichever device has gone further.
-void describe_camera(const Parts& parts, FrameDescription& frame) {
-    const double wire_mm = parts.wire ? parts.wire->insertion_mm() : -1.0;
-    const double catheter_mm = parts.catheter ? parts.catheter_state->insertion_mm : -1.0;
+void describe_camera(const ScenePoses& poses, FrameDescription& frame) {
     std::optional<FrameCamera> camera;
-    if (parts.catheter && catheter_mm >= wire_mm) {
-        const Pose& tip = parts.catheter_route->shape.tip;
+    if (poses.tip) {
         camera.emplace();
-        camera->pose = camera_pose(tip.position, tip.orientation * Vec3::UnitZ(), frame.inner_camera);
-    } else if (parts.wire) {
-        const std::vector<Vec3> points = parts.wire->polyline();
-        camera.emplace();
-        camera->pose = camera_pose(points[0], (points[0] - points[1]).normalized(), frame.inner_camera);
+        camera->pose = camera_pose(poses.tip->position, poses.tip->forward, frame.inner_camera);
     }
     frame.inner_camera = camera;
 }
@@ -180,15 +102,8 @@ void describe_outer_camera(const ViewChange& change, FrameDescription& frame) {
     frame.outer_camera->field_of_view_deg = field_deg;
 }
 
-void describe_beam(const World& world, const SceneSpec& scene, const Channels& channels, const ViewChange& change,
+void describe_beam(BeamSpec beam, const SceneSpec& scene, const Channels& channels, const ViewChange& change,
                    FrameDescription& frame) {
-    BeamSpec fallback;
-    fallback.c_arm.sid_mm = scene.c_arm.sid_mm;
-    fallback.c_arm.sod_mm = scene.c_arm.sod_mm;
-    fallback.c_arm.field_mm = scene.c_arm.field_of_view_mm;
-    fallback.isocentre = scene.c_arm.isocentre.point;
-    const auto* in_world = world.first<BeamSpec>();
-    BeamSpec beam = in_world != nullptr ? *in_world : fallback;
     beam.c_arm.sid_mm = change.sid_mm.value_or(beam.c_arm.sid_mm);
     beam.c_arm.sod_mm = change.sod_mm.value_or(beam.c_arm.sod_mm);
     beam.c_arm.field_mm = change.field_mm.value_or(beam.c_arm.field_mm);
@@ -204,9 +119,8 @@ void describe_beam(const World& world, const SceneSpec& scene, const Channels& c
     frame.view.width_mm = beam.c_arm.field_mm;
     frame.view.height_mm = beam.c_arm.field_mm;
     frame.view.source_isocentre_mm = beam.c_arm.sod_mm;
-    const bool stepped = in_world != nullptr;  // else the channels say nothing about a beam
-    frame.view.open_width = change.open_width.value_or(stepped ? channels.collimator_width : 1.0);
-    frame.view.open_height = change.open_height.value_or(stepped ? channels.collimator_height : 1.0);
+    frame.view.open_width = change.open_width.value_or(channels.collimator_width);
+    frame.view.open_height = change.open_height.value_or(channels.collimator_height);
     frame.series.number = static_cast<std::uint64_t>(channels.exposure_series);
     frame.series.subtracted = channels.acquisition >= 1.5;
     frame.series.collected = channels.acquisition >= 0.5;
@@ -228,19 +142,16 @@ void describe_beam(const World& world, const SceneSpec& scene, const Channels& c
 
 }  // namespace
 
-void describe_frame(World& world, const SceneSpec& scene, const Channels& channels, const ViewChange& change,
-                    FrameMemory& memory, FrameDescription& frame) {
-    const Parts parts = find_parts(world);
-    describe_solids(*parts.anatomy, frame);
-    describe_lumen(parts, memory, frame.lumen);
-    frame.devices.clear();
-    if (parts.catheter) frame.devices.push_back(describe_catheter(*parts.catheter, parts.catheter_route->shape));
-    if (parts.wire) frame.devices.push_back(describe_wire(*parts.wire, parts.world->first<GuidePath>()));
-    describe_camera(parts, frame);
+void describe_frame(const FrameStage& stage, const ScenePoses& poses, const SceneSpec& scene, const Channels& channels,
+                    const ViewChange& change, FrameMemory& memory, FrameDescription& frame) {
+    describe_solids(*stage.anatomy, frame);
+    describe_lumen(stage, poses, memory, frame.lumen);
+    describe_devices(poses.devices, frame.devices);
+    describe_camera(poses, frame);
     frame.show_inner_view = frame.inner_camera.has_value() && !change.alone;
     frame.show_reference = channels.references > 0.5 && !change.alone;
     describe_outer_camera(change, frame);
-    describe_beam(world, scene, channels, change, frame);
+    describe_beam(*stage.beam, scene, channels, change, frame);
     frame.wall_force_limit_n = channels.force_limit_n > 0.0 ? channels.force_limit_n : 0.8;
 }
 

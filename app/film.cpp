@@ -63,6 +63,7 @@ struct Film::Impl {
     FilmQueue queue;
     std::optional<FrameCamera> camera;  // of the picture before
     FrameMemory memory;
+    ScenePoses poses;
     HudData panels;
     MessageLines messages;
     std::unique_ptr<LabelRecorder> labels;
@@ -81,16 +82,21 @@ bool Film::due(double time_s) const {
 }
 
 void Film::add(World& world, const Channels& channels) {
+    if (impl_->options.probe) impl_->options.probe("describe");
+    take_poses(world, impl_->poses);
+    add(stage_of(world), impl_->poses, channels);
+}
+
+void Film::add(const FrameStage& stage, const ScenePoses& poses, const Channels& channels) {
     Impl& m = *impl_;
     FilmFrame& film_frame = m.queue.next();
     FrameDescription& frame = film_frame.picture;
-    if (m.options.probe) m.options.probe("describe");
     frame.width = m.options.width;
     frame.height = m.options.height;
     frame.seed = m.scene.seed;
     frame.frame_index = m.count;
     frame.inner_camera = m.camera;
-    describe_frame(world, m.scene, channels, m.options.view, m.memory, frame);
+    describe_frame(stage, poses, m.scene, channels, m.options.view, m.memory, frame);
     // Between two pulses the last picture is held; the pedal's first picture does not wait for a pulse.
     const double pulse = channels.exposures, series = channels.exposure_series;
     if (!m.options.view.beam_on && pulse == m.pulse && series == m.series) frame.beam_on = false;
@@ -103,8 +109,8 @@ void Film::add(World& world, const Channels& channels) {
     if (m.options.probe) m.options.probe("panels");
     m.lay_out(frame, channels);
     if (!m.options.labels.empty()) {
-        if (!m.labels) m.labels = std::make_unique<LabelRecorder>(m.options.labels, m.options.path, world);
-        m.labels->add(world, m.scene, channels, frame);
+        if (!m.labels) m.labels = std::make_unique<LabelRecorder>(m.options.labels, m.options.path, stage, poses);
+        m.labels->add(stage, poses, m.scene, channels, frame);
     }
     ++m.count;
     m.queue.submit();

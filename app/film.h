@@ -8,6 +8,7 @@
 #include "imaging/image.h"
 #include "scene/scene_spec.h"
 #include "studio.h"
+#include "take_poses.h"
 #include "world/world.h"
 
 namespace cathlab {
@@ -39,6 +40,8 @@ public:
     bool due(double time_s) const;
     /// Takes a picture of the world as it stands.  Throws what stopped the film, be it this picture or an earlier one.
     void add(World& world, const Channels& channels);
+    /// The same of a world that stood so.
+    void add(const FrameStage& stage, const ScenePoses& poses, const Channels& channels);
     /// Keeps an event for the message lines.
     void message(const Event& event);
     /// The last picture so far becomes the poster.

@@ -5,11 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "contrast/transport.h"
 #include "imaging/coco_writer.h"
 #include "render/frame_renderer.h"
 #include "render/labels.h"
-#include "step/parts.h"
+#include "world/step_settings.h"
 
 namespace cathlab {
 namespace {
@@ -62,24 +61,22 @@ struct LabelRecorder::Impl {
     std::vector<CocoKeyPoint> key_points;
     Json view;
 
-    void find_points(World& world, const FrameDescription& frame);
-    void label(World& world, const FrameDescription& frame);
+    void find_points(const FrameStage& stage, const ScenePoses& poses, const FrameDescription& frame);
+    void label(const FrameStage& stage, const ScenePoses& poses, const FrameDescription& frame);
 };
 
-LabelRecorder::LabelRecorder(const std::string& path, const std::string& film, World& world)
+LabelRecorder::LabelRecorder(const std::string& path, const std::string& film, const FrameStage& stage,
+                             const ScenePoses& poses)
     : impl_(std::make_unique<Impl>()) {
     Impl& m = *impl_;
     m.film = film;
-    const Parts parts = find_parts(world);
-    const AnatomyModel& anatomy = *parts.anatomy;
+    const AnatomyModel& anatomy = *stage.anatomy;
     std::vector<std::pair<std::string, std::string>> categories;
     std::vector<std::string> points;
-    for (const auto& [there, name] :
-         {std::pair(parts.catheter != nullptr, catheter_entity), std::pair(parts.wire != nullptr, wire_entity)}) {
-        if (!there) continue;
-        m.device_names.emplace_back(name);
-        categories.emplace_back(name, "device");
-        points.push_back(std::string(name) + "_tip");
+    for (const DevicePose& device : poses.devices) {
+        m.device_names.push_back(device.name);
+        categories.emplace_back(device.name, "device");
+        points.push_back(device.name + "_tip");
     }
     m.source.region = anatomy.lumen_region;
     for (const Region& region : anatomy.regions) {
@@ -101,9 +98,7 @@ LabelRecorder::LabelRecorder(const std::string& path, const std::string& film, W
 
 LabelRecorder::~LabelRecorder() = default;
 
-void LabelRecorder::Impl::find_points(World& world, const FrameDescription& frame) {
-    const Parts parts = find_parts(world);
-    const auto* contrast = world.first<ContrastState>();
+void LabelRecorder::Impl::find_points(const FrameStage& stage, const ScenePoses& poses, const FrameDescription& frame) {
     source.points.clear();
     for (const std::string& name : device_names) {
         const auto device = std::find_if(frame.devices.begin(), frame.devices.end(),
@@ -112,22 +107,21 @@ void LabelRecorder::Impl::find_points(World& world, const FrameDescription& fram
         const Vec3 tip = name == wire_entity ? device->points.front() : device->points.back();
         source.points.push_back({name + "_tip", tip, true});
     }
-    const std::vector<Vec3>& rest = parts.anatomy->lumen.vertices;
+    const std::vector<Vec3>& rest = stage.anatomy->lumen.vertices;
     for (const WallPoint& point : wall_points) {
         Vec3 moved = Vec3::Zero();
         for (const std::size_t v : point.vertices) moved += frame.lumen.vertices[v] - rest[v];
         moved /= static_cast<double>(point.vertices.size());
-        const bool filled = contrast != nullptr && point.node >= 0 &&
-                            static_cast<std::size_t>(point.node) < contrast->concentration.size() &&
-                            contrast->concentration[static_cast<std::size_t>(point.node)] > source.seen_mg_ml;
+        const bool filled = point.node >= 0 && static_cast<std::size_t>(point.node) < poses.contrast_mg_ml.size() &&
+                            poses.contrast_mg_ml[static_cast<std::size_t>(point.node)] > source.seen_mg_ml;
         source.points.push_back({point.name, point.rest + moved, filled});
     }
 }
 
-void LabelRecorder::Impl::label(World& world, const FrameDescription& frame) {
+void LabelRecorder::Impl::label(const FrameStage& stage, const ScenePoses& poses, const FrameDescription& frame) {
     const FrameRect at = layout_of(frame).fluoroscopy;
-    find_points(world, frame);
-    const FrameLabels labels = label_frame(frame, source, at.width, at.height, world.workers());
+    find_points(stage, poses, frame);
+    const FrameLabels labels = label_frame(frame, source, at.width, at.height, *stage.workers);
     annotations.clear();
     const auto mask = [&](const std::vector<std::uint8_t>& pixels) {
         return coco_mask(pixels, at.width, at.height, at.x, at.y, frame.width, frame.height);
@@ -177,10 +171,11 @@ void LabelRecorder::Impl::label(World& world, const FrameDescription& frame) {
             {"keypoints_mm", world_points}};
 }
 
-void LabelRecorder::add(World& world, const SceneSpec& scene, const Channels& channels, const FrameDescription& frame) {
+void LabelRecorder::add(const FrameStage& stage, const ScenePoses& poses, const SceneSpec& scene,
+                        const Channels& channels, const FrameDescription& frame) {
     Impl& m = *impl_;
     if (frame.beam_on) {
-        m.label(world, frame);
+        m.label(stage, poses, frame);
         m.exposed = true;
     }
     Json facts = {{"frame", frame.frame_index}, {"beam_on", frame.beam_on}};

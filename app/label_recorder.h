@@ -7,7 +7,7 @@
 #include "core/channels.h"
 #include "render/frame_description.h"
 #include "scene/scene_spec.h"
-#include "world/world.h"
+#include "take_poses.h"
 
 namespace cathlab {
 
@@ -16,12 +16,14 @@ namespace cathlab {
 /// picture that it shows; before the first exposure there are none.
 class LabelRecorder {
 public:
-    /// film: what the pictures' file_name says.  Throws UserError where the file cannot be written; so do the others.
-    LabelRecorder(const std::string& path, const std::string& film, World& world);
+    /// film: what the pictures' file_name says; poses: whose devices those of all pictures are.  Throws UserError where
+    /// the file cannot be written; so do the others.
+    LabelRecorder(const std::string& path, const std::string& film, const FrameStage& stage, const ScenePoses& poses);
     ~LabelRecorder();
 
     /// The picture of this description, whose size and index are set.
-    void add(World& world, const SceneSpec& scene, const Channels& channels, const FrameDescription& frame);
+    void add(const FrameStage& stage, const ScenePoses& poses, const SceneSpec& scene, const Channels& channels,
+             const FrameDescription& frame);
     void close();
 
 private:

@@ -7,9 +7,13 @@
 #include "beam/view_presets.h"
 #include "commands.h"
 #include "core/errors.h"
+#include "core/log.h"
 #include "film.h"
 #include "progress.h"
+#include "record/poses.h"
 #include "record/run_reader.h"
+#include "record/run_writer.h"
+#include "recorded_film.h"
 #include "recorded_scene.h"
 #include "run_options.h"
 #include "run_verifier.h"
@@ -26,12 +30,45 @@ struct ReplayOptions {
     std::string out;    // folder of what is made of the pictures
     std::string still;  // "" or a file: the last picture
     double to_s = 0.0;  // 0: to the run's end
+    bool simulate = false;
 };
 
 bool pictured(const ReplayOptions& options) {
     const FilmArguments& film = options.film;
     return (!film.video.empty() && film.video != "none") || !film.labels.empty() || !film.dicom.empty() ||
            !film.frames.empty() || !options.still.empty();
+}
+
+std::unique_ptr<Film> open_film(const ReplayOptions& options, const SceneSpec& scene, int threads) {
+    const std::string video = options.film.video == "none" ? "" : options.film.video;
+    return std::make_unique<Film>(scene, film_options(options.film, scene, video, options.out), threads);
+}
+
+std::int64_t end_of(const ReplayOptions& options, std::int64_t steps, double dt_s) {
+    return options.to_s > 0.0 ? std::min<std::int64_t>(steps, std::llround(options.to_s / dt_s)) : steps;
+}
+
+void close_film(const ReplayOptions& options, Film& film) {
+    if (!options.still.empty() && film.frames() > 0) write_png(options.still, film.poster());
+    film.close();
+}
+
+// What the run left of itself is enough for a picture.
+void render_poses(const ReplayOptions& options, const RunRecord& run, AppContext& context) {
+    const SceneSpec scene = recorded_scene(run, context);
+    const ThreadShares threads = share_threads(options.threads, true);
+    const FilmOptions wanted = film_options(options.film, scene, "", options.out);
+    RecordedFilm recorded(run, scene, threads.step, context);
+    if (wanted.fps > recorded.rate_hz() * (1.0 + 1e-9))
+        log::warn(options.folder + ": has poses of " + exact_number(recorded.rate_hz()) +
+                  " instants a second; pictures between two show the earlier one (--simulate: their own)");
+    const std::unique_ptr<Film> film = open_film(options, scene, threads.film);
+    const std::int64_t end = end_of(options, recorded.steps(), scene.step.dt_s);
+    const std::int64_t done = recorded.film(*film, end);
+    close_film(options, *film);
+    if (done < end) throw UserError("stopped after step " + std::to_string(done) + " of " + std::to_string(end));
+    std::printf("%s: %zu pictures of %lld steps, from its poses\n", options.folder.c_str(), film->frames(),
+                static_cast<long long>(done));
 }
 
 void replay(const ReplayOptions& options, AppContext& context) {
@@ -44,14 +81,10 @@ void replay(const ReplayOptions& options, AppContext& context) {
     if (session.anatomy_hash() != run.manifest.anatomy_hash)
         throw UserError(options.folder + ": the anatomy is built otherwise than when this run was recorded");
     std::unique_ptr<Film> film;
-    if (pictured(options)) {
-        const std::string video = options.film.video == "none" ? "" : options.film.video;
-        film = std::make_unique<Film>(scene, film_options(options.film, scene, video, options.out), threads.film);
-    }
+    if (pictured(options)) film = open_film(options, scene, threads.film);
     Progress progress("replaying");
     std::int64_t k = 0;
-    const std::int64_t end =
-        options.to_s > 0.0 ? std::min<std::int64_t>(run.steps, std::llround(options.to_s / session.dt())) : run.steps;
+    const std::int64_t end = end_of(options, run.steps, session.dt());
     bool agrees = true;
     for (; k < end && agrees && !stop_wanted(); ++k) {
         agrees = !verifier || verifier->state(k, session.world());
@@ -65,10 +98,7 @@ void replay(const ReplayOptions& options, AppContext& context) {
         progress.update(static_cast<double>(k + 1) / static_cast<double>(end));
     }
     progress.end();
-    if (film) {
-        if (!options.still.empty() && film->frames() > 0) write_png(options.still, film->poster());
-        film->close();
-    }
+    if (film) close_film(options, *film);
     if (agrees && verifier) agrees = verifier->state(k, session.world());
     if (!agrees) throw UserError(options.folder + ": " + verifier->difference());
     if (k < end) throw UserError("stopped after step " + std::to_string(k) + " of " + std::to_string(end));
@@ -140,6 +170,7 @@ void add_render_command(CLI::App& app, AppContext& context) {
     command->add_option("--from", view.from_s, "s, of the first picture")->check(CLI::Range(0.0, 86400.0));
     command->add_option("--to", options->to_s, "s, where it ends; else with the run")->check(CLI::Range(0.02, 86400.0));
     command->add_option("--still", options->still, "a PNG file: the last picture");
+    command->add_flag("--simulate", options->simulate, "step the run again, even where its folder has poses.bin");
     command->add_option("--threads", options->threads, "in all; from 2 on one of them draws the film")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
@@ -149,6 +180,12 @@ void add_render_command(CLI::App& app, AppContext& context) {
         std::filesystem::create_directories(options->out, error);
         if (error) throw UserError("cannot make the folder '" + options->out + "': " + error.message());
         if (options->film.video.empty() && options->still.empty()) options->film.video = options->out + "/fluoro.mp4";
+        const RunRecord run = read_run(options->folder);
+        if (!options->simulate && has_poses(options->folder)) {
+            render_poses(*options, run, context);
+            return;
+        }
+        if (!options->simulate) log::warn(options->folder + ": has no poses.bin, so the run is stepped again");
         replay(*options, context);
     });
 }

@@ -11,6 +11,7 @@
 #include "core/log.h"
 #include "film.h"
 #include "progress.h"
+#include "record/poses.h"
 #include "record/run_writer.h"
 #include "record/sums.h"
 #include "run_facts.h"
@@ -30,6 +31,7 @@ struct RunOptions {
     std::optional<std::uint64_t> seed;
     int threads = default_threads();
     FilmArguments film;
+    double poses_hz = -1.0;  // < 0: as the film's pictures, none without one
     bool force = false;
     std::string pilot;  // "" = the script
     std::string skill = "expert";
@@ -53,7 +55,8 @@ public:
           pilot_(pilot(options, session)),
           who_{pilot_ ? options.pilot : "script", pilot_ ? options.skill : ""},
           film_(open_film(options, session)),
-          writer_(folder_, manifest(options, session, context), session.entity_names()) {}
+          writer_(folder_, manifest(options, session, context), session.entity_names()),
+          poses_(open_poses(options, session)) {}
 
     /// True if the run reached its end, false if it was stopped.  After an exception the folder is closed too.
     bool run() {
@@ -104,6 +107,12 @@ private:
             throw;
         }
     }
+    std::unique_ptr<PosesWriter> open_poses(const RunOptions& options, Session& session) const {
+        const double film_hz = film_ ? film_options(options.film, session.scene(), "", "").fps : 0.0;
+        const double rate_hz = options.poses_hz >= 0.0 ? options.poses_hz : film_hz;
+        if (rate_hz <= 0.0) return nullptr;
+        return std::make_unique<PosesWriter>(folder_, poses_frame(*stage_of(session.world()).anatomy), rate_hz);
+    }
     static RunManifest manifest(const RunOptions& options, Session& session, const AppContext& context) {
         RunManifest m = manifest_of(session.scene(), options.overlays, session.anatomy_hash(), context);
         if (!options.script.empty()) m.script = path_for_manifest(options.script, context.data_root);
@@ -124,12 +133,20 @@ private:
             session_.step(input);
             writer_.step(done_, session_.channels(), session_.events());
             watch_.add(session_.world(), session_.channels(), session_.dt());
+            if (poses_) keep_poses();
             if (film_) draw();
             char detail[64];
             std::snprintf(detail, sizeof detail, "%.1f of %.1f s", simulated_s(),
                           static_cast<double>(steps_) * session_.dt());
             progress.update(static_cast<double>(done_ + 1) / static_cast<double>(steps_), detail);
         }
+    }
+    void keep_poses() {
+        if (poses_->due(session_.channels().time_s)) {
+            take_poses(session_.world(), moving_);
+            poses_->add(done_, moving_);
+        }
+        if (RunWriter::flushes(done_)) poses_->flush();
     }
     void draw() {
         for (const Event& event : session_.events()) film_->message(event);
@@ -141,6 +158,7 @@ private:
         if (finished_) return;
         finished_ = true;
         if (done_ > 0) writer_.hash(done_, session_.world().state_hash());
+        if (poses_) poses_->close();
         if (!watch_.empty()) {
             writer_.file("metrics.json", metrics_json(watch_.metrics()));
             writer_.file("regions.csv", watch_.forces().regions_csv());
@@ -181,6 +199,8 @@ private:
     OperatorName who_;
     std::unique_ptr<Film> film_;
     RunWriter writer_;
+    std::unique_ptr<PosesWriter> poses_;
+    ScenePoses moving_;
     Clock::time_point begin_ = Clock::now();
     double wall_s_ = 0.0;
     bool finished_ = false;
@@ -188,6 +208,7 @@ private:
 
 void run(RunOptions options, AppContext& context) {
     require_finite("--seconds", options.seconds);
+    require_finite("--poses", options.poses_hz);
     const SceneSpec scene =
         load_scene(find_scene(options.scene, context.data_root), options.overlays, context.data_root);
     if (!options.pilot.empty() && !options.script.empty())
@@ -234,6 +255,12 @@ void add_run_command(CLI::App& app, AppContext& context) {
         ->capture_default_str();
     add_film_options(*command, options->film,
                      "the film: .mp4, .avi (lossless), or none; else fluoro.mp4 in the folder");
+    command
+        ->add_option(
+            "--poses", options->poses_hz,
+            "how often a second poses.bin keeps what moves, for `cathlab render`; 0: never; else as the film's "
+            "pictures, and never without a film")
+        ->check(CLI::Range(0.0, 1000.0));
     command->add_option("--overlay", options->overlays, "a file laid over the scene; may be given again")
         ->allow_extra_args(false);
     command->add_option("--operator", options->pilot, "who acts instead of a script; the scene must set a task")

@@ -19,6 +19,9 @@ bool filmed(const FilmArguments& arguments) {
 
 void add_film_options(CLI::App& command, FilmArguments& arguments, const std::string& video_text) {
     command.add_option("--video", arguments.video, video_text);
+    command.add_option(
+        "--codec", arguments.codec,
+        "of the film: h264 or mpeg4 (.mp4), ffv1 (.avi); else as its name says, and for .mp4 what there is");
     command.add_option("--size", arguments.size, "of the film, WxH; else the scene's");
     command.add_option("--fps", arguments.fps, "pictures a second of simulated time; else the scene's")
         ->check(CLI::Range(1.0, 120.0));
@@ -53,6 +56,7 @@ FilmOptions film_options(const FilmArguments& arguments, const SceneSpec& scene,
     require_finite("--fps", arguments.fps);
     if (arguments.fps > 0.0) out.fps = arguments.fps;
     if (!arguments.labels.empty()) out.labels = folder + "/labels.json";
+    out.codec = arguments.codec;
     out.dicom = arguments.dicom;
     out.frames = arguments.frames;
     out.frames_as_float = arguments.frame_format == "float";

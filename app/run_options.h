@@ -18,6 +18,7 @@ struct FilmArguments {
     double fps = 0.0;                  ///< 0 = the scene's
     std::string labels;                ///< "" or "coco": labels.json beside the film
     std::string dicom;                 ///< "" or a file
+    std::string codec;                 ///< "" = as the film's name says
     std::string frames;                ///< "" or a folder
     std::string frame_format = "png";  ///< or "float"
     ViewChange view;

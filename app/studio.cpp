@@ -17,7 +17,8 @@ struct Studio::Impl {
     Impl(const FilmOptions& options, bool apart)
         : renderer(make_gl_target()), probe(options.probe), encode_apart(apart) {
         renderer.set_probe(probe);
-        if (!options.path.empty()) writer.emplace(options.path, options.width, options.height, options.fps);
+        if (!options.path.empty())
+            writer.emplace(options.path, options.width, options.height, options.fps, options.codec);
         dicom_path = options.dicom;
         dicom_facts = options.dicom_facts;
         frames = options.frames;

@@ -24,6 +24,7 @@ struct FilmOptions {
     std::string dicom = {};                                 ///< a DICOM file of the fluoroscopy, "" = none
     DicomFacts dicom_facts = {};
     std::string frames = {};       ///< a folder for what the detector read in each picture, "" = none
+    std::string codec = {};        ///< of the film, "" = as its name says
     bool frames_as_float = false;  ///< raw floats instead of 16-bit PNG
     ViewChange view = {};
 };

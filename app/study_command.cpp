@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -14,10 +15,14 @@
 #include "core/html_page.h"
 #include "progress.h"
 #include "record/run_files.h"
+#include "record/run_reader.h"
+#include "recorded_scene.h"
 #include "scene/load_scene.h"
 #include "scene/toml_document.h"
+#include "scored_run.h"
 #include "session.h"
 #include "study/study_report.h"
+#include "study/trial_page.h"
 #include "task/scene_task.h"
 #include "trial_run.h"
 
@@ -32,6 +37,7 @@ struct StudyOptions {
     int trials = 2;
     int participants = 20;
     int threads = default_threads();
+    bool verify = false;
 };
 
 void init(const StudyOptions& options, const AppContext& context) {
@@ -89,6 +95,37 @@ void status(const StudyOptions& options) {
     for (const std::string& sentence : left_out) std::printf("  left out: %s\n", sentence.c_str());
 }
 
+/// Does all of them, so many at the same time, until one throws or a stop is wanted; how many said that they are done.
+std::size_t each_at_once(const char* job, std::size_t count, int threads,
+                         const std::function<bool(std::size_t)>& work_on) {
+    catch_stop_signals();
+    Progress progress(job);
+    std::atomic<std::size_t> next{0}, finished{0};
+    std::mutex mutex;
+    std::exception_ptr failure;
+    const auto work = [&] {
+        for (std::size_t k = next++; k < count && !stop_wanted(); k = next++) {
+            try {
+                if (work_on(k)) ++finished;
+            } catch (...) {
+                const std::scoped_lock lock(mutex);
+                if (!failure) failure = std::current_exception();
+                next = count;
+            }
+            const std::scoped_lock lock(mutex);
+            progress.update(static_cast<double>(finished) / static_cast<double>(count),
+                            std::to_string(finished) + " of " + std::to_string(count) + " trials");
+        }
+    };
+    std::vector<std::jthread> workers;
+    for (int k = 1; k < threads; ++k) workers.emplace_back(work);
+    work();
+    workers.clear();
+    progress.end();
+    if (failure) std::rethrow_exception(failure);
+    return finished;
+}
+
 void rehearse(const StudyOptions& options, AppContext& context) {
     const Protocol protocol = read_study(options.folder);
     for (const std::string& group : protocol.groups) find_skill(group);
@@ -107,36 +144,14 @@ void rehearse(const StudyOptions& options, AppContext& context) {
         const SceneSpec scene = load_scene(task_scene(trial.task, context), {}, context.data_root);
         scenes[trial.task] = {scene, session_models(scene, options.threads, context)};
     }
-    catch_stop_signals();
-    Progress progress("rehearsing");
-    std::atomic<std::size_t> next{0}, finished{0};
-    std::mutex mutex;
-    std::exception_ptr failure;
-    const auto work = [&] {
-        for (std::size_t k = next++; k < open.size() && !stop_wanted(); k = next++) {
-            try {
-                const auto& [scene, models] = scenes.at(open[k].task);
-                const PilotedRun run{options.folder + "/" + open[k].folder, open[k].group,
-                                     trial_seed(protocol, open[k]), trial_json(open[k])};
-                if (fly(run, scene, *models, context)) ++finished;
-            } catch (...) {
-                const std::scoped_lock lock(mutex);
-                if (!failure) failure = std::current_exception();
-                next = open.size();
-            }
-            const std::scoped_lock lock(mutex);
-            progress.update(static_cast<double>(finished) / static_cast<double>(open.size()),
-                            std::to_string(finished) + " of " + std::to_string(open.size()) + " trials");
-        }
-    };
-    std::vector<std::jthread> threads;
-    for (int k = 1; k < options.threads; ++k) threads.emplace_back(work);
-    work();
-    threads.clear();
-    progress.end();
-    if (failure) std::rethrow_exception(failure);
-    std::printf("%s: %zu trials by autopilots, %zu were there before or are left\n", options.folder.c_str(),
-                finished.load(), open.size() - finished.load());
+    const std::size_t finished = each_at_once("rehearsing", open.size(), options.threads, [&](std::size_t k) {
+        const auto& [scene, models] = scenes.at(open[k].task);
+        return fly(
+            {options.folder + "/" + open[k].folder, open[k].group, trial_seed(protocol, open[k]), trial_json(open[k])},
+            scene, *models, context);
+    });
+    std::printf("%s: %zu trials by autopilots, %zu were there before or are left\n", options.folder.c_str(), finished,
+                open.size() - finished);
     if (finished < open.size()) context.exit_code = 1;
 }
 
@@ -177,7 +192,80 @@ std::vector<GroupAnswers> answers_of(const std::string& study, const Protocol& p
     return out;
 }
 
-void report(const StudyOptions& options, const AppContext& context) {
+/// Where the trial can be watched, and whether it is what its inputs give.
+class TrialNotes {
+public:
+    TrialNotes(const StudyOptions& options, const std::string& out, const AppContext& context)
+        : options_(options), out_(out), context_(context) {}
+
+    /// Writes the trial's page.  What hinders it or differs is said in the note; throws UserError where the page
+    /// cannot be written or a stop was wanted.
+    TrialNote make(const RunEntry& run) {
+        TrialNote note;
+        std::vector<TrialFrame> frames;
+        try {
+            const RunRecord record = read_run(options_.folder + "/" + run.folder);
+            const SceneSpec scene = recorded_scene(record, context_);
+            const auto models = models_of(scene);
+            if (options_.verify) note.verified = verify(record, scene, *models);
+            frames = frames_of(record, scene);
+            note.page = "trials/" + run.participant + "-" + run.task + "-" + std::to_string(run.trial) + ".html";
+            const std::string verified = note.verified == "yes"  ? "verified: its inputs give the same run"
+                                         : note.verified.empty() ? ""
+                                                                 : "NOT VERIFIED: " + note.verified;
+            write_whole_file(out_ + "/" + note.page,
+                             trial_page(run, anatomy_of(*models).centreline, frames, verified, "../report.html"));
+        } catch (const UserError& error) {
+            if (stop_wanted()) throw;
+            if (options_.verify) note.verified = error.what();
+        }
+        return note;
+    }
+
+private:
+    static constexpr std::size_t steps_a_frame = 5;
+
+    std::shared_ptr<const SceneModels> models_of(const SceneSpec& scene) {
+        const std::scoped_lock lock(mutex_);
+        auto& models = models_[scene.path];
+        if (!models) models = session_models(scene, options_.threads, context_);
+        return models;
+    }
+
+    std::string verify(const RunRecord& record, const SceneSpec& scene, const SceneModels& models) const {
+        const ScoredRun scored = score_run(record, scene, &models, 1, context_, {});
+        return scored.differences.empty() ? "yes" : scored.differences.front();
+    }
+
+    static std::vector<TrialFrame> frames_of(const RunRecord& record, const SceneSpec& scene) {
+        const auto task = task_of(scene);
+        const bool catheter = task && task->device == "catheter";
+        const std::vector<Channels> trace = read_trace(record.folder, record.manifest.complete);
+        std::vector<TrialFrame> frames;
+        for (std::size_t k = 0; k < trace.size(); k += steps_a_frame) {
+            const Channels& c = trace[k];
+            frames.push_back({c.time_s,
+                              catheter ? Vec3(c.catheter_tip_x_mm, c.catheter_tip_y_mm, c.catheter_tip_z_mm)
+                                       : Vec3(c.wire_tip_x_mm, c.wire_tip_y_mm, c.wire_tip_z_mm),
+                              c.force_bar, c.beam_on > 0.5});
+        }
+        return frames;
+    }
+
+    const StudyOptions& options_;
+    std::string out_;
+    const AppContext& context_;
+    std::mutex mutex_;
+    std::map<std::string, std::shared_ptr<const SceneModels>> models_;  // by the scene's path
+};
+
+void make_folder(const std::string& path) {
+    std::error_code error;
+    fs::create_directories(path, error);
+    if (error) throw UserError(path + ": cannot be made: " + error.message(), true);
+}
+
+void report(const StudyOptions& options, AppContext& context) {
     const Protocol protocol = read_study(options.folder);
     const auto participants = read_participants(options.folder, protocol);
     std::vector<std::string> left_out;
@@ -185,20 +273,34 @@ void report(const StudyOptions& options, const AppContext& context) {
     std::vector<RunEntry> runs;
     for (RunEntry& run : index.list())
         if (run.trial > 0) runs.push_back(std::move(run));
-    Page page = study_page(protocol, participants, runs);
+    const std::string out = options.out.empty() ? options.folder : options.out;
+    make_folder(out + "/trials");
+    TrialNotes made(options, out, context);
+    std::vector<TrialNote> note(runs.size());
+    each_at_once(options.verify ? "verifying" : "drawing", runs.size(), options.threads, [&](std::size_t k) {
+        note[k] = made.make(runs[k]);
+        return true;
+    });
+    if (stop_wanted()) throw UserError("stopped; no report was written");
+    std::map<std::string, TrialNote> notes;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+        if (options.verify && note[k].verified != "yes") {
+            std::printf("DIFFERS: %s: %s\n", runs[k].folder.c_str(), note[k].verified.c_str());
+            context.exit_code = 1;
+        }
+        notes[runs[k].folder] = std::move(note[k]);
+    }
+    Page page = study_page(protocol, participants, runs, notes);
     const auto answers = answers_of(options.folder, protocol, runs, left_out);
     page.bars = likert_bars(answers);
     if (PageTable scales = scales_table(answers); !scales.rows.empty()) page.tables.push_back(std::move(scales));
     page.maps = force_maps(forces_of(options.folder, protocol, runs));
     for (const std::string& sentence : left_out) page.paragraphs.push_back("Left out: " + sentence);
     page.command = context.command_line;
-    const std::string out = options.out.empty() ? options.folder : options.out;
-    std::error_code error;
-    fs::create_directories(out, error);
-    if (error) throw UserError(out + ": cannot be made: " + error.message(), true);
     write_whole_file(out + "/report.html", html_page(page));
     write_whole_file(out + "/trials.csv", trials_csv(runs));
-    std::printf("written: %s/report.html, %s/trials.csv (%zu runs)\n", out.c_str(), out.c_str(), runs.size());
+    std::printf("written: %s/report.html, %s/trials.csv, %s/trials (%zu runs)\n", out.c_str(), out.c_str(), out.c_str(),
+                runs.size());
 }
 
 }  // namespace
@@ -228,11 +330,17 @@ void add_study_command(CLI::App& app, AppContext& context) {
     rehearsed->add_option("--participants", options->participants, "in all")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    rehearsed->add_option("--threads", options->threads, "trials at the same time")
-        ->check(CLI::Range(1, 256))
-        ->capture_default_str();
+    const auto threads = [options](CLI::App* command) {
+        command->add_option("--threads", options->threads, "trials at the same time")
+            ->check(CLI::Range(1, 256))
+            ->capture_default_str();
+    };
+    threads(rehearsed);
     rehearsed->callback([options, &context] { rehearse(*options, context); });
-    CLI::App* reported = sub("report", "One page and a table from the run folders");
+    CLI::App* reported = sub("report", "One page, a page for each trial and a table from the run folders");
+    reported->add_flag("--verify", options->verify,
+                       "steps every trial again from its inputs; exit code 1 where anything differs");
+    threads(reported);
     reported->add_option("--out", options->out, "a folder; else the study's own");
     reported->callback([options, &context] { report(*options, context); });
 }

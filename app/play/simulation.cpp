@@ -109,7 +109,8 @@ void Simulation::describe(FrameDescription& frame) {
     frame.seed = options_.scene.seed;
     frame.frame_index = pulses_;
     frame.inner_camera = camera_;
-    describe_frame(session_.world(), options_.scene, channels(), {}, memory_, frame);
+    take_poses(session_.world(), poses_);
+    describe_frame(stage_of(session_.world()), poses_, options_.scene, channels(), {}, memory_, frame);
     frame.outer_map = outer_map_;
     camera_ = frame.inner_camera;
 }

@@ -107,6 +107,7 @@ private:
     Course course_;
     MessageLines messages_;
     FrameMemory memory_;
+    ScenePoses poses_;
     std::optional<FrameCamera> camera_;
     OuterMap outer_map_ = OuterMap::displacement;
     Input input_;

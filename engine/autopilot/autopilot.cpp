@@ -85,7 +85,7 @@ Input Autopilot::act(const World& world, const Channels& last, Input base) {
     if (!wire) steer_catheter(world, seen.goal, input);
     input.fluoroscopy = input.advance != 0.0 || input.rotate != 0.0 ? 1.0 : 0.0;
     follow_with_table(world, tip, input);
-    return input;
+    return in_range(input);  // the search for bends asks for more than there is, and a run keeps what was taken
 }
 
 void Autopilot::drive(const Vec3& tip, const Vec3& goal, double bar, Input& input) {

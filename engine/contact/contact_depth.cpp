@@ -21,10 +21,13 @@ bool ContactSet::presses_hard(std::size_t r, std::span<const DeviceSample> sampl
     return rows_[r].gap < -looks_deep_mm;
 }
 
-bool ContactSet::presses(std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const {
+std::vector<Vec3> ContactSet::pressing(std::span<const DeviceSample> samples_now, double force_mn,
+                                       double front_mn) const {
+    std::vector<Vec3> places;
     for (std::size_t r = 0; r < rows_.size(); ++r)
-        if (presses_hard(r, samples_now, force_mn, front_mn)) return true;
-    return false;
+        if (presses_hard(r, samples_now, force_mn, front_mn))
+            places.push_back(samples_now[at(wall_[r].sample)].position);
+    return places;
 }
 
 TrueDepth ContactSet::true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,

@@ -20,6 +20,9 @@ constexpr double deep_mm = 0.25;
 constexpr std::size_t samples_together = 4;
 constexpr double ball_mm = 12.0;
 
+// Rows that are worth a thread of their own.
+constexpr std::size_t row_grain = 96;
+
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
@@ -302,23 +305,26 @@ void ContactSet::set_compliance(std::span<const double> particle_compliance) {
     for (const Index p : particle_) touching_[at(p)] = 0;
 }
 
-void ContactSet::refresh(std::span<const DeviceSample> samples_now, std::span<const Vec3> particles_now) {
+void ContactSet::refresh(std::span<const DeviceSample> samples_now, std::span<const Vec3> particles_now,
+                         const Workers& workers) {
     CATHLAB_CHECK(samples_now.size() == sample_before_.size(), "refresh takes the samples of detect");
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-        ChainRow& row = rows_[r];
-        WallRow& wall = wall_[r];
-        const DeviceSample& s = samples_now[at(wall.sample)];
-        Vec3 q = Vec3::Zero();
-        for (std::size_t j = wall.begin; j < wall.end; ++j) q += weight_[j] * particles_now[at(particle_[j])];
-        wall.point = q;
-        wall.separation = s.position - q;
-        row.gap = row.normal.dot(s.position - q) - wall.offset;
-        // Forces act where the surfaces meet, so friction also turns the device about its axis.
-        row.arm = s.arm - wall.radius * row.normal;
-        const Vec3 relative = (s.position - sample_before_[at(wall.sample)]) - (q - wall.point_before) -
-                              wall.radius * s.rotation.cross(row.normal);
-        row.slip = tangential(relative, row.normal);
-    }
+    workers.for_ranges(rows_.size(), row_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t r = begin; r < end; ++r) {
+            ChainRow& row = rows_[r];
+            WallRow& wall = wall_[r];
+            const DeviceSample& s = samples_now[at(wall.sample)];
+            Vec3 q = Vec3::Zero();
+            for (std::size_t j = wall.begin; j < wall.end; ++j) q += weight_[j] * particles_now[at(particle_[j])];
+            wall.point = q;
+            wall.separation = s.position - q;
+            row.gap = row.normal.dot(s.position - q) - wall.offset;
+            // Forces act where the surfaces meet, so friction also turns the device about its axis.
+            row.arm = s.arm - wall.radius * row.normal;
+            const Vec3 relative = (s.position - sample_before_[at(wall.sample)]) - (q - wall.point_before) -
+                                  wall.radius * s.rotation.cross(row.normal);
+            row.slip = tangential(relative, row.normal);
+        }
+    });
 }
 
 double ContactSet::deepest(Index device) const {

@@ -105,7 +105,8 @@ public:
 
     /// Gap, slip and arm of every row from the samples (same number and order as in detect; position, arm and rotation
     /// are read) and the particles where they are now.  Normal, weights and compliance stay.
-    void refresh(std::span<const DeviceSample> samples_now, std::span<const Vec3> particles_now);
+    void refresh(std::span<const DeviceSample> samples_now, std::span<const Vec3> particles_now,
+                 const Workers& workers = Workers());
 
     /// Deepest penetration among the rows of a device at the last refresh, mm, >= 0.
     double deepest(Index device) const;
@@ -119,8 +120,8 @@ public:
     /// facets as they lay at detect; under a tip that presses they turn.  Where it is large, detect again.
     TrueDepth true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
                          std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const;
-    /// Whether any sample carries so much.
-    bool presses(std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const;
+    /// Where those samples are, neighbours side by side; one with several such rows stands there as often.
+    std::vector<Vec3> pressing(std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const;
 
     /// The rows of one device for the chain solve, contiguous, ascending from the tip; multipliers are in and out.
     std::span<ChainRow> chain_rows(Index device);

@@ -7,7 +7,7 @@ namespace cathlab {
 namespace {
 
 constexpr Index leaf_size = 4;
-constexpr std::size_t leaf_grain = 1024;
+constexpr std::size_t leaf_grain = 256;
 constexpr double ball_mm = 5.0;  // places that are asked for at once
 
 Vec3 centroid(const Triangle& t, std::span<const Vec3> vertices) {
@@ -131,7 +131,8 @@ void refit(const SurfaceTree& tree, const TreePart& part, std::span<const Triang
     }
 }
 
-TreePart part_near(const SurfaceTree& tree, const TreeBoxes& boxes, std::span<const Vec3> places, double reach) {
+TreePart part_near(const SurfaceTree& tree, const TreeBoxes& boxes, std::span<const Vec3> places, double reach,
+                   const TreePart* of) {
     std::vector<std::uint8_t> wanted(tree.nodes.size(), 0);
     NearLeaves near;
     for (std::size_t i = 0; i < places.size();) {
@@ -144,11 +145,13 @@ TreePart part_near(const SurfaceTree& tree, const TreeBoxes& boxes, std::span<co
     }
     TreePart part;
     std::vector<std::uint8_t> met(tree.vertex_count, 0);
-    for (std::size_t l = 0; l < tree.leaves.size(); ++l) {
+    const std::size_t leaves = of ? of->leaves.size() : tree.leaves.size();
+    for (std::size_t k = 0; k < leaves; ++k) {
+        const std::size_t l = of ? static_cast<std::size_t>(of->leaves[k]) : k;
         if (!wanted[static_cast<std::size_t>(tree.leaves[l])]) continue;
         part.leaves.push_back(static_cast<Index>(l));
-        for (Index k = tree.leaf_vertex_start[l]; k < tree.leaf_vertex_start[l + 1]; ++k)
-            met[static_cast<std::size_t>(tree.leaf_vertex[static_cast<std::size_t>(k)])] = 1;
+        for (Index v = tree.leaf_vertex_start[l]; v < tree.leaf_vertex_start[l + 1]; ++v)
+            met[static_cast<std::size_t>(tree.leaf_vertex[static_cast<std::size_t>(v)])] = 1;
     }
     for (std::size_t v = 0; v < met.size(); ++v)
         if (met[v]) part.vertices.push_back(static_cast<Index>(v));

@@ -67,8 +67,10 @@ struct TreePart {
     std::vector<Index> vertices;  ///< of the leaves' triangles, ascending
 };
 
-/// The leaves whose boxes come within `reach` of any of `places`, which lie near each other as they follow.
-TreePart part_near(const SurfaceTree& tree, const TreeBoxes& boxes, std::span<const Vec3> places, double reach);
+/// The leaves whose boxes come within `reach` of any of `places`, which lie near each other as they follow; of a part
+/// of the tree, where one is given.
+TreePart part_near(const SurfaceTree& tree, const TreeBoxes& boxes, std::span<const Vec3> places, double reach,
+                   const TreePart* of = nullptr);
 
 /// The boxes of a part; the others stay as they are.
 void refit(const SurfaceTree& tree, const TreePart& part, std::span<const Triangle> triangles,

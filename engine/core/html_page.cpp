@@ -26,9 +26,15 @@ std::string table_text(const PageTable& table) {
         for (const std::string& cell : table.header) out += "<th>" + xml_escaped(cell) + "</th>";
         out += "</tr>\n";
     }
-    for (const auto& row : table.rows) {
+    for (std::size_t r = 0; r < table.rows.size(); ++r) {
         out += "<tr>";
-        for (const std::string& cell : row) out += "<td>" + xml_escaped(cell) + "</td>";
+        const std::string link = r < table.links.size() ? table.links[r] : "";
+        for (std::size_t c = 0; c < table.rows[r].size(); ++c) {
+            const std::string cell = xml_escaped(table.rows[r][c]);
+            out += "<td>" +
+                   (c == 0 && !link.empty() ? "<a href=\"" + xml_escaped(link) + "\">" + cell + "</a>" : cell) +
+                   "</td>";
+        }
         out += "</tr>\n";
     }
     return out + "</table>\n";

@@ -14,6 +14,7 @@ struct PageTable {
     std::string caption;
     std::vector<std::string> header;             ///< one a column; no header where all are empty
     std::vector<std::vector<std::string>> rows;  ///< the first cell of a row names it
+    std::vector<std::string> links = {};         ///< where the rows' first cells lead; "" or none = nowhere
 };
 
 struct Page {

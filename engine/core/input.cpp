@@ -1,6 +1,8 @@
 #include "core/input.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace cathlab {
 
@@ -18,6 +20,16 @@ const ActionInfo* find_action(std::string_view name) {
     for (const ActionInfo& a : action_table())
         if (a.name == name) return &a;
     return nullptr;
+}
+
+Input in_range(const Input& wanted) {
+    Input input = wanted;
+    for (const ActionInfo& action : action_table()) {
+        double& value = input.*action.value;
+        if (!std::isfinite(value)) value = action.default_value;
+        value = std::clamp(value, action.minimum, action.maximum);
+    }
+    return input;
 }
 
 }  // namespace cathlab

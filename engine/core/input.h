@@ -32,4 +32,8 @@ std::span<const ActionInfo> action_table();
 /// nullptr where there is none of that name.
 const ActionInfo* find_action(std::string_view name);
 
+/// As a step takes it and a run records it: what is not a number is the action's default, what is out of range its
+/// limit.
+Input in_range(const Input& wanted);
+
 }  // namespace cathlab

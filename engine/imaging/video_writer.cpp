@@ -42,6 +42,32 @@ void require_writable(const std::string& path, const std::string& part) {
                         std::to_string(least_free_bytes >> 20) + " MB are wanted)");
 }
 
+struct NamedCodec {
+    const char* name;
+    FilmCodec codec;
+    const char* extension;
+};
+constexpr NamedCodec named_codecs[] = {
+    {"h264", FilmCodec::h264, ".mp4"}, {"mpeg4", FilmCodec::mpeg4, ".mp4"}, {"ffv1", FilmCodec::lossless, ".avi"}};
+
+void require_codec(const std::string& path, const std::string& name, const std::string& extension) {
+    std::vector<std::string> names, here;
+    const NamedCodec* wanted = nullptr;
+    for (const NamedCodec& known : named_codecs) {
+        names.emplace_back(known.name);
+        if (LibavEncoder::knows(known.codec)) here.emplace_back(known.name);
+        if (name == known.name) wanted = &known;
+    }
+    const std::string start = "cannot write video '" + path + "': ";
+    if (wanted == nullptr)
+        throw UserError(start + "there is no codec '" + name + "'; known are " + comma_list(names) +
+                        did_you_mean(name, names));
+    if (extension != wanted->extension)
+        throw UserError(start + "the codec " + name + " goes into a file " + wanted->extension);
+    if (!LibavEncoder::knows(wanted->codec))
+        throw UserError(start + "this system has no encoder of " + name + "; it has " + comma_list(here));
+}
+
 }  // namespace
 
 struct VideoWriter::Impl {
@@ -67,7 +93,8 @@ struct VideoWriter::Impl {
     }
 };
 
-VideoWriter::VideoWriter(const std::string& path, int width, int height, double fps) : impl_(std::make_unique<Impl>()) {
+VideoWriter::VideoWriter(const std::string& path, int width, int height, double fps, const std::string& codec)
+    : impl_(std::make_unique<Impl>()) {
     const std::string extension = fs::path(path).extension().string();
     if (extension != ".mp4" && extension != ".avi") {
         throw UserError("cannot write video '" + path + "': its name must end in .mp4 (H.264) or .avi (lossless FFV1)");
@@ -80,6 +107,7 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, double 
         throw UserError("a video with " + std::to_string(fps) +
                         " frames per second cannot be written: allowed is (0, 240]");
     }
+    if (!codec.empty()) require_codec(path, codec, extension);
     impl_->path = path;
     impl_->part = part_name(path);
     impl_->width = width;
@@ -87,10 +115,10 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, double 
     require_writable(path, impl_->part);
     if (extension == ".avi") {
         impl_->open(FilmCodec::lossless, "FFV1", fps);
-    } else if (LibavEncoder::knows(FilmCodec::h264)) {
+    } else if (codec != "mpeg4" && LibavEncoder::knows(FilmCodec::h264)) {
         impl_->open(FilmCodec::h264, "avc1", fps);
     } else {
-        log::warn("no H.264 encoder here; '" + path + "' is written as MPEG-4 part 2 (mp4v)");
+        if (codec.empty()) log::warn("no H.264 encoder here; '" + path + "' is written as MPEG-4 part 2 (mp4v)");
         impl_->open(FilmCodec::mpeg4, "mp4v", fps);
     }
 }

@@ -16,8 +16,10 @@ namespace cathlab {
 class VideoWriter {
 public:
     /// fps in (0, 240]; width and height even (4:2:0 halves the colour planes), at least 16.
-    /// Throws UserError on odd or tiny sizes, an unknown extension, an unwritable or full folder, a missing codec.
-    VideoWriter(const std::string& path, int width, int height, double fps);
+    /// codec: "h264", "mpeg4" (.mp4) or "ffv1" (.avi), and nothing else is taken for it; "": as the name says.
+    /// Throws UserError on odd or tiny sizes, an unknown extension, an unwritable or full folder, a codec that is
+    /// unknown, does not go with the name, or that this system has no encoder of.
+    VideoWriter(const std::string& path, int width, int height, double fps, const std::string& codec = "");
     /// Without close() before it: the film is given up, and its part file removed.
     ~VideoWriter();
     VideoWriter(const VideoWriter&) = delete;

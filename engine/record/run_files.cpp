@@ -16,9 +16,10 @@ namespace cathlab {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array run_file_names{"manifest.json", "inputs.jsonl", "trace.csv",  "events.jsonl", "hashes.csv",
-                                    "metrics.json",  "poster.png",   "fluoro.mp4", "fluoro.avi",   "labels.json",
-                                    "report.html",   "result.json",  "sums.json",  "regions.csv",  "force-map.csv"};
+constexpr std::array run_file_names{"manifest.json", "inputs.jsonl", "trace.csv",     "events.jsonl",
+                                    "hashes.csv",    "metrics.json", "poster.png",    "fluoro.mp4",
+                                    "fluoro.avi",    "labels.json",  "report.html",   "result.json",
+                                    "sums.json",     "regions.csv",  "force-map.csv", "poses.bin"};
 
 std::string reason() {
     return std::strerror(errno);
@@ -84,9 +85,13 @@ void LineFile::fail() const {
     throw UserError(path_ + ": cannot be written: " + reason());
 }
 
+void LineFile::append(const std::string& bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail();
+}
+
 void LineFile::add(const std::string& line) {
-    if (std::fwrite(line.data(), 1, line.size(), file_.get()) != line.size() || std::fputc('\n', file_.get()) == EOF)
-        fail();
+    append(line);
+    if (std::fputc('\n', file_.get()) == EOF) fail();
 }
 
 void LineFile::flush() {

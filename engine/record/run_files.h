@@ -5,6 +5,7 @@
 //     trace.csv       every channel, one row a step, "name [unit]" in the header
 //     events.jsonl    what happened, one object a line
 //     hashes.csv      every 50 steps and after the last: steps done, whole state, each entity
+//     poses.bin       what moves in a picture, see poses.h
 //     metrics.json, poster.png, fluoro.mp4
 #pragma once
 
@@ -36,6 +37,8 @@ class LineFile {
 public:
     explicit LineFile(const std::string& path);
     void add(const std::string& line);
+    /// Bytes as they are.
+    void append(const std::string& bytes);
     void flush();
     /// Flushes to the disk itself.
     void close();

@@ -169,6 +169,25 @@ std::vector<Channels> read_trace(const std::string& folder, bool complete) {
     return out;
 }
 
+std::vector<Event> read_events(const std::string& folder, bool complete) {
+    const std::string path = folder + "/events.jsonl";
+    SourcePlace where{path, 0, ""};
+    std::vector<Event> out;
+    for (const std::string& line : read_lines(path, complete)) {
+        ++where.line;
+        JsonFields fields(parse_json(line, where), where);
+        Event& event = out.emplace_back();
+        fields.read("step", event.step);
+        fields.read("time_s", event.time_s);
+        fields.read("kind", event.kind);
+        fields.read("entity", event.entity);
+        fields.read("message", event.message);
+        fields.member("value");  // of an event that is not a number it is null, and no picture shows it
+        fields.done();
+    }
+    return out;
+}
+
 std::string first_difference(const World::StateHash& recorded, const World::StateHash& now) {
     if (recorded.entities.size() != now.entities.size()) return "the list of entities";
     for (std::size_t i = 0; i < now.entities.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/channels.h"
+#include "core/event.h"
 #include "core/input.h"
 #include "record/manifest.h"
 #include "world/world.h"
@@ -36,6 +37,9 @@ RunRecord read_run(const std::string& folder);
 
 /// One row of trace.csv a step.  Throws UserError with file:line; columns must be those of this program's channels.
 std::vector<Channels> read_trace(const std::string& folder, bool complete);
+
+/// The lines of events.jsonl.  Throws UserError with file:line.
+std::vector<Event> read_events(const std::string& folder, bool complete);
 
 /// What differs first: "" when the two agree; otherwise the name of the first entity whose hash differs, or a sentence
 /// when the entities themselves differ.

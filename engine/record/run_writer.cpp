@@ -53,14 +53,12 @@ RunWriter::RunWriter(const std::string& folder, RunManifest manifest, const std:
     hashes_.add(header);
 }
 
-void RunWriter::input(std::int64_t step, const Input& input) {
+void RunWriter::input(std::int64_t step, const Input& wanted) {
+    const Input input = in_range(wanted);
     if (last_input_ && same(*last_input_, input)) return;
     last_input_ = input;
     nlohmann::ordered_json values;
-    for (const ActionInfo& action : action_table()) {
-        CATHLAB_CHECK(std::isfinite(input.*action.value), "an input must be finite before it is recorded");
-        values[std::string(action.name)] = input.*action.value;
-    }
+    for (const ActionInfo& action : action_table()) values[std::string(action.name)] = input.*action.value;
     inputs_.add(dump({{"step", step}, {"input", std::move(values)}}));
     inputs_.flush();  // no row of the trace may reach the disk before the input that made it
 }
@@ -76,7 +74,11 @@ void RunWriter::step(std::int64_t step, const Channels& channels, const std::vec
                           {"entity", e.entity},
                           {"message", e.message},
                           {"value", e.value}}));
-    if ((step + 1) % flush_interval == 0) flush();
+    if (flushes(step)) flush();
+}
+
+bool RunWriter::flushes(std::int64_t step) {
+    return (step + 1) % flush_interval == 0;
 }
 
 void RunWriter::flush() {

@@ -21,12 +21,15 @@ public:
     /// entities: their names in the order of World::state_hash().
     RunWriter(const std::string& folder, RunManifest manifest, const std::vector<std::string>& entities);
 
-    /// The input that the step of this index (0 = the first) is about to get.  Only changes are written.
-    void input(std::int64_t step, const Input& input);
+    /// The input that the step of this index (0 = the first) is about to get.  Only changes are written,
+    /// as the step takes them (in_range).
+    void input(std::int64_t step, const Input& wanted);
     /// After the step of this index: the channels, and what happened.  Flushed every 25 steps.
     void step(std::int64_t step, const Channels& channels, const std::vector<Event>& events);
     /// Hands over to the system what a crash of this process would lose.
     void flush();
+    /// Whether step() flushes after the step of this index.
+    static bool flushes(std::int64_t step);
     /// After `steps` steps; written if steps is a multiple of hash_interval or `last`.
     static bool wants_hash(std::int64_t steps) { return steps % hash_interval == 0; }
     void hash(std::int64_t steps, const World::StateHash& hash);

@@ -266,7 +266,8 @@ void Fluoroscope::Impl::draw_lumen(const FrameDescription& f, const Projection& 
     }
     const bool has_wall = !f.lumen.wall_material.empty() && !f.lumen.wall_mm.empty();
     Part& inner = next_part();
-    raster.draw(projection, f.lumen.vertices, f.lumen.triangles, f.lumen.contrast_mg_ml, inner.lengths);
+    raster.draw(projection, f.lumen.vertices, f.lumen.triangles, f.lumen.contrast_mg_ml, inner.lengths,
+                f.lumen.radius_mm);
     inner.mu = difference(*beam, f.lumen.material, has_wall ? f.lumen.wall_material : f.lumen.surrounding);
     if (inner.with_contrast()) inner.mu_of_contrast = beam->iodine();
     bad += inner.lengths.bad_pixels;
@@ -441,6 +442,7 @@ const std::vector<std::uint8_t>& Fluoroscope::draw(const FrameDescription& frame
         return self.grey;
     }
     const Projection projection(frame.view, width, height);
+    require_before_source(frame, projection);
     self.use_beam(frame.exposure);
     self.upload_solids(frame);
     ViewKey view = view_key(frame, width, height);

@@ -42,6 +42,7 @@ struct FrameLumen {
     std::vector<Triangle> triangles;  ///< (m) const for one topology_revision
     std::vector<double> wall_mm;      ///< (n) wall thickness, outer surface = vertex + wall_mm * normal; may be empty
     std::vector<double> contrast_mg_ml;   ///< (n) iodine in the blood, mg/mL; empty: none
+    std::vector<double> radius_mm;        ///< (n) of the lumen near each vertex, > 0; empty: alike everywhere
     std::vector<double> wall_force_n;     ///< (n) force on the wall near each vertex, N; empty: none
     std::vector<double> displacement_mm;  ///< (n) way from the rest position; empty: none
     std::uint64_t topology_revision = 0;

@@ -60,7 +60,7 @@ void PathRaster::project(const Projection& projection, std::span<const Vec3> ver
 }
 
 template <bool with_values>
-void PathRaster::add(const Triangle& t, std::span<const double> values) {
+void PathRaster::add(const Triangle& t, std::span<const double> values, std::span<const double> widths) {
     const Corner& a = corners_[static_cast<std::size_t>(t[0])];
     const Corner& b = corners_[static_cast<std::size_t>(t[1])];
     const Corner& c = corners_[static_cast<std::size_t>(t[2])];
@@ -93,8 +93,14 @@ void PathRaster::add(const Triangle& t, std::span<const double> values) {
     ny *= per_offset;
     nz *= per_offset;
 
+    float width = 1.0F;
     double value_0 = 0.0, gx = 0.0, gy = 0.0, gz = 0.0;  // value = value_0 + depth * (g . ray)
     if constexpr (with_values) {
+        if (!widths.empty()) {
+            double sum = 0.0;
+            for (int k = 0; k < 3; ++k) sum += widths[static_cast<std::size_t>(t[k])];
+            width = static_cast<float>(sum / 3.0);
+        }
         const double va = values[static_cast<std::size_t>(t[0])];
         const double du = values[static_cast<std::size_t>(t[1])] - va, dv = values[static_cast<std::size_t>(t[2])] - va;
         // The gradient within the plane, from its two edges u and v.
@@ -128,7 +134,7 @@ void PathRaster::add(const Triangle& t, std::span<const double> values) {
             sum.exits += sign;
             if constexpr (with_values) {
                 const auto v = static_cast<float>(value_0 + depth * (gx * slope_x + gy * slope_y + gz));
-                met_.emplace_back(static_cast<std::uint32_t>(start + x), Crossing{d, v, sign});
+                met_.emplace_back(static_cast<std::uint32_t>(start + x), Crossing{d, v, width, sign});
             }
         }
     }
@@ -160,14 +166,17 @@ float PathRaster::integral(std::size_t pixel) const {
     for (std::size_t k = first_[pixel]; k + 1 < first_[pixel + 1]; ++k) {
         const Crossing &here = crossings_[k], &next = crossings_[k + 1];
         layers -= here.exit;
-        if (layers > 0.0F) sum += layers * 0.5F * (here.value + next.value) * (next.depth - here.depth);
+        if (layers > 0.0F)
+            sum += layers * (here.width * here.value + next.width * next.value) / (here.width + next.width) *
+                   (next.depth - here.depth);
     }
     return std::max(0.0F, sum);
 }
 
 void PathRaster::draw(const Projection& projection, std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                      std::span<const double> values, PathLengths& out) {
+                      std::span<const double> values, PathLengths& out, std::span<const double> widths) {
     CATHLAB_CHECK(values.empty() || values.size() == vertices.size(), "one value a vertex");
+    CATHLAB_CHECK(widths.empty() || widths.size() == vertices.size(), "one width a vertex");
     const bool with_values = std::any_of(values.begin(), values.end(), [](double v) { return v > 0.0; });
     width_ = projection.width();
     height_ = projection.height();
@@ -178,10 +187,10 @@ void PathRaster::draw(const Projection& projection, std::span<const Vec3> vertic
     sums_.assign(count, Sum{});
     if (with_values) {
         met_.clear();
-        for (const Triangle& t : triangles) add<true>(t, values);
+        for (const Triangle& t : triangles) add<true>(t, values, widths);
         sort_crossings();
     } else {
-        for (const Triangle& t : triangles) add<false>(t, values);
+        for (const Triangle& t : triangles) add<false>(t, values, widths);
     }
 
     out.bad_pixels = 0;

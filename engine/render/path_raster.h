@@ -20,10 +20,14 @@ namespace cathlab {
 class PathRaster {
 public:
     /// vertices: mm, world, and wholly on the detector's side of the source; values: one a vertex, >= 0, to be
-    /// integrated along the ray (trapezoid between each entry and the exit after it, so that of two vessels behind one
-    /// another each has its own), or empty.
+    /// integrated along the ray (between each entry and the exit after it, so that of two vessels behind one another
+    /// each has its own), or empty; widths: one a vertex, > 0, or empty for alike.  Over a way s between an entry and
+    /// an exit
+    ///     integral = s (w1 c1 + w2 c2) / (w1 + w2),
+    /// the trapezoid where both are as wide.  Where a narrow vessel opens into a wide one, a ray goes in through the
+    /// wall of one and out through the other's, and most of its way is in the wide one.
     void draw(const Projection& projection, std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-              std::span<const double> values, PathLengths& out);
+              std::span<const double> values, PathLengths& out, std::span<const double> widths = {});
 
 private:
     struct Corner {
@@ -36,11 +40,11 @@ private:
         float exits = 0.0F;  // leaving - entering
     };
     struct Crossing {
-        float depth, value, exit;  // exit: 1 leaving, -1 entering
+        float depth, value, width, exit;  // exit: 1 leaving, -1 entering
     };
 
     template <bool with_values>
-    void add(const Triangle& t, std::span<const double> values);
+    void add(const Triangle& t, std::span<const double> values, std::span<const double> widths);
     void project(const Projection& projection, std::span<const Vec3> vertices);
     void sort_crossings();
     float integral(std::size_t pixel) const;

@@ -158,15 +158,7 @@ Vec3 isocentre(const SceneSpec& spec, const AnatomyModel& anatomy) {
 }
 
 void add_camera(World& world, const SceneSpec& spec, const SceneModels& models) {
-    BeamSpec beam;
-    beam.c_arm.sid_mm = spec.c_arm.sid_mm;
-    beam.c_arm.sod_mm = spec.c_arm.sod_mm;
-    beam.c_arm.field_mm = spec.c_arm.field_of_view_mm;
-    beam.isocentre = isocentre(spec, *models.anatomy);
-    beam.primary_deg = spec.c_arm.primary_deg;
-    beam.secondary_deg = spec.c_arm.secondary_deg;
-    beam.pulses_per_s = spec.c_arm.frame_rate;
-    validate(beam, spec.c_arm.where);
+    BeamSpec beam = beam_spec(spec, *models.anatomy);
     const Entity camera = world.create(camera_entity);
     world.add(camera, initial_state(beam));
     world.add(camera, std::move(beam));
@@ -200,6 +192,23 @@ HeartSpec heart_spec(const SceneSpec& spec, const AnatomyModel& anatomy) {
 }
 
 }  // namespace
+
+BeamSpec beam_spec(const SceneSpec& spec, const AnatomyModel& anatomy) {
+    BeamSpec beam;
+    beam.c_arm.sid_mm = spec.c_arm.sid_mm;
+    beam.c_arm.sod_mm = spec.c_arm.sod_mm;
+    beam.c_arm.field_mm = spec.c_arm.field_of_view_mm;
+    beam.isocentre = isocentre(spec, anatomy);
+    beam.primary_deg = spec.c_arm.primary_deg;
+    beam.secondary_deg = spec.c_arm.secondary_deg;
+    beam.pulses_per_s = spec.c_arm.frame_rate;
+    validate(beam, spec.c_arm.where);
+    return beam;
+}
+
+std::shared_ptr<const AnatomyModel> build_anatomy(const SceneSpec& spec, const BuildOptions& options) {
+    return std::make_shared<const AnatomyModel>(get_anatomy(spec, options, Workers(options.threads)));
+}
 
 std::shared_ptr<const SceneModels> build_models(const SceneSpec& spec, const BuildOptions& options) {
     const Workers workers(options.threads);
@@ -271,6 +280,10 @@ std::unique_ptr<World> build_world(const SceneSpec& spec, const SceneModels& mod
 
 std::unique_ptr<World> build_world(const SceneSpec& spec, const BuildOptions& options) {
     return build_world(spec, *build_models(spec, options), spec.seed, options.threads);
+}
+
+const AnatomyModel& anatomy_of(const SceneModels& models) {
+    return *models.anatomy;
 }
 
 std::uint64_t anatomy_hash(const SceneModels& models) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "anatomy/model.h"
+#include "beam/exposure.h"
 #include "scene/scene_spec.h"
 #include "world/world.h"
 
@@ -28,7 +30,15 @@ std::unique_ptr<World> build_world(const SceneSpec& spec, const SceneModels& mod
 /// Both in one.
 std::unique_ptr<World> build_world(const SceneSpec& spec, const BuildOptions& options);
 
-/// Content hash of the anatomy in the models.
+/// The anatomy alone, without the wall that build_models() makes of it: for who draws and does not step.
+std::shared_ptr<const AnatomyModel> build_anatomy(const SceneSpec& spec, const BuildOptions& options);
+/// The beam of every world of the scene.  Throws UserError for a C-arm that cannot be.
+BeamSpec beam_spec(const SceneSpec& spec, const AnatomyModel& anatomy);
+
+/// The anatomy in the models; it lives as long as they do.
+const AnatomyModel& anatomy_of(const SceneModels& models);
+
+/// Its content hash.
 std::uint64_t anatomy_hash(const SceneModels& models);
 
 }  // namespace cathlab

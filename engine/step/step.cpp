@@ -12,17 +12,13 @@
 namespace cathlab {
 namespace {
 
-// What is not a number counts as the action's default, what is out of range as its limit; either leaves an event.
+// What in_range changes leaves an event.
 Input clamped(const Parts& p, const Input& wanted) {
-    Input input = wanted;
-    for (const ActionInfo& action : action_table()) {
-        double& value = input.*action.value;
-        const double found = value;
-        if (!std::isfinite(value)) value = action.default_value;
-        value = std::clamp(value, action.minimum, action.maximum);
-        if (value != found)
-            p.event("clamped", world_entity, "action '" + std::string(action.name) + "' was out of its range", value);
-    }
+    const Input input = in_range(wanted);
+    for (const ActionInfo& action : action_table())
+        if (input.*action.value != wanted.*action.value)
+            p.event("clamped", world_entity, "action '" + std::string(action.name) + "' was out of its range",
+                    input.*action.value);
     return input;
 }
 

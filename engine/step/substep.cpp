@@ -46,6 +46,9 @@ constexpr int passes_to_go_back = 3;
 constexpr double pushed_out_mm = 0.2;
 // Within a step the lumen surface follows the wall up to this far from the devices.
 constexpr double surface_reach_mm = 4.5;
+// ... and for a look at the true depth up to this far from what presses: no closest point asks further
+// (closest_point.h), and the wall has moved a little since its boxes were fitted.
+constexpr double true_depth_reach_mm = 7.5;
 
 void command_wire(Parts& p, const Input& input, double h, StepSums& sums) {
     if (p.wire_mouth) p.wire->move_mouth(place_now(*p.wire_mouth, *p.wall, p.wall_state->x));
@@ -128,9 +131,11 @@ void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<Ch
 
 // How deep the samples that press hard are in the wall as the last pass left it.
 TrueDepth pressed_depth(Parts& p, const DeviceSamples& samples, StepSums& sums) {
-    if (!p.contacts->presses(samples.list, pressed_mn, front_pressed_mn)) return {};
-    sums.surface_follows = true;
-    update(*p.surface, p.wall_state->x, *sums.surface_near, *p.surface_state, p.world->workers());
+    const std::vector<Vec3> places = p.contacts->pressing(samples.list, pressed_mn, front_pressed_mn);
+    if (places.empty()) return {};
+    const TreePart near =
+        part_near(p.surface->tree, p.surface_state->boxes, places, true_depth_reach_mm, &*sums.surface_near);
+    update(*p.surface, p.wall_state->x, near, *p.surface_state, p.world->workers());
     return p.contacts->true_depth(*p.surface, *p.surface_state, samples.list, pressed_mn, front_pressed_mn);
 }
 
@@ -141,7 +146,7 @@ void find_contacts(Parts& p, DeviceSamples& samples, std::span<const Vec3> parti
     refresh_samples(p, samples);
     const Workers& workers = p.world->workers();
     if (sums.surface_near) {
-        if (!sums.surface_follows) update(*p.surface, particles, *sums.surface_near, *p.surface_state, workers);
+        update(*p.surface, particles, *sums.surface_near, *p.surface_state, workers);
     } else {
         update(*p.surface, particles, *p.surface_state, workers);
         std::vector<Vec3> places;
@@ -274,7 +279,6 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
     WallPart touched;  // by devices and heart: passes after the first look at the wall around them alone
     for (int pass = 0; pass < passes; ++pass) {
         p.stage("softbody");
-        sums.surface_follows = false;
         if (pass == 0) {
             extra.gather(p);
             solve_and_apply(wall, state, scratch, h, 1, workers);
@@ -286,7 +290,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
 
         p.stage("contact");
         refresh_samples(p, samples);
-        p.contacts->refresh(samples.list, state.x);
+        p.contacts->refresh(samples.list, state.x, workers);
         for (int k = 0; p.wire && k < wire_solves && (k == 0 || p.contacts->deepest(wire_device) > wire_depth_mm);
              ++k) {
             p.stage("rod");
@@ -297,7 +301,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
             p.contacts->yield(wire_device, before, state.x, scratch.compliance);
             limit_speed(wall, state, scratch, h, p.contacts->particles());
             refresh_samples(p, samples);
-            p.contacts->refresh(samples.list, state.x);
+            p.contacts->refresh(samples.list, state.x, workers);
         }
         if (tip) {
             const Vec3 held = tip->way;
@@ -321,7 +325,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
         // Where wall and device slid past each other, the rows speak of another place: look again, and once more.
         p.stage("contact");
         refresh_samples(p, samples);
-        p.contacts->refresh(samples.list, state.x);
+        p.contacts->refresh(samples.list, state.x, workers);
         if (pass + 1 < passes) continue;
         deepest = pressed_depth(p, samples, sums);
         too_deep = deepest.mm > pressed_depth_mm;
@@ -350,8 +354,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
         p.stage("contact");
         push_out(*p.surface, *sums.surface_near, *p.contacts, samples.list, pushed_out_mm, scratch.compliance, state.x,
                  *p.surface_state, workers);
-        sums.surface_follows = false;
-        p.contacts->refresh(samples.list, state.x);
+        p.contacts->refresh(samples.list, state.x, workers);
     }
     p.stage("rod");
     if (p.wire) {

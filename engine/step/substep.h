@@ -23,7 +23,6 @@ struct StepSums {
     Index tip_region = -1;  ///< of the wall contact nearest to a tip that carries force; -1 = no tip in contact
     Index tip_device = -1;
     std::optional<TreePart> surface_near;  ///< what the lumen surface's later updates in this step are about
-    bool surface_follows = false;          ///< that part stands where the wall does now
 };
 
 /// Advances everything by h.  `time_s`: at the beginning; `s0`, `s1`: the part of the step that the substep covers, 0

@@ -132,18 +132,43 @@ private:
     const std::vector<RunEntry>& runs_;
 };
 
-PageTable trials_table(const std::vector<RunEntry>& runs) {
-    PageTable out{"Every trial; cathlab replay FOLDER shows it again",
-                  {"folder", "group", "task", "trial", "play time, s", "collision, N", "complete"},
+TrialNote note_of(const std::map<std::string, TrialNote>& notes, const RunEntry& run) {
+    const auto found = notes.find(run.folder);
+    return found == notes.end() ? TrialNote() : found->second;
+}
+
+PageTable trials_table(const std::vector<RunEntry>& runs, const std::map<std::string, TrialNote>& notes) {
+    PageTable out{"Every trial; cathlab play --replay FOLDER shows it as it was seen",
+                  {"folder", "group", "task", "trial", "play time, s", "collision, N", "complete", "verified"},
                   {}};
     const auto metric = [](const RunEntry& run, const char* name) {
         const auto found = run.metrics.find(name);
         return found == run.metrics.end() ? std::string("-") : number(found->second);
     };
-    for (const RunEntry& run : runs)
+    for (const RunEntry& run : runs) {
+        const TrialNote note = note_of(notes, run);
         out.rows.push_back({run.folder, run.group, run.task, std::to_string(run.trial), metric(run, "play_time_s"),
-                            metric(run, "accumulated_collision_n"), run.complete ? "yes" : "no"});
+                            metric(run, "accumulated_collision_n"), run.complete ? "yes" : "no",
+                            note.verified.empty() ? "-" : note.verified});
+        out.links.push_back(note.page);
+    }
     return out;
+}
+
+/// How many runs are what their inputs give, as far as somebody looked.
+std::string verified_sentence(const std::vector<RunEntry>& runs, const std::map<std::string, TrialNote>& notes) {
+    std::size_t looked = 0, agree = 0;
+    for (const RunEntry& run : runs) {
+        const std::string verified = note_of(notes, run).verified;
+        looked += verified.empty() ? 0 : 1;
+        agree += verified == "yes" ? 1 : 0;
+    }
+    if (looked == 0)
+        return "Not verified: the figures are those that the runs stored (cathlab study report --verify steps them "
+               "again).";
+    return "Verified: of " + std::to_string(looked) + " runs stepped again from their inputs, " +
+           std::to_string(agree) + " agree in every file, channel, hash and metric" +
+           (agree == looked ? "." : "; the others are named in the last table.");
 }
 
 }  // namespace
@@ -223,7 +248,7 @@ PageTable scales_table(const std::vector<GroupAnswers>& groups) {
 }
 
 Page study_page(const Protocol& protocol, const std::vector<Participant>& participants,
-                const std::vector<RunEntry>& runs) {
+                const std::vector<RunEntry>& runs, const std::map<std::string, TrialNote>& notes) {
     Page page;
     page.title = "Study " + protocol.name;
     const auto synthetic =
@@ -239,6 +264,7 @@ Page study_page(const Protocol& protocol, const std::vector<Participant>& partic
     if (protocol.groups.size() < 2)
         page.paragraphs.emplace_back("One group: there is nothing to compare, so no test is computed.");
     if (runs.empty()) page.paragraphs.emplace_back("No run is there yet, so no figure can be computed.");
+    if (!runs.empty()) page.paragraphs.push_back(verified_sentence(runs, notes));
     const Table table(protocol, runs);
     for (const Figure& figure : figures) {
         page.tables.push_back(table.means(figure));
@@ -247,7 +273,7 @@ Page study_page(const Protocol& protocol, const std::vector<Participant>& partic
     }
     if (protocol.trials > 1)
         for (const Figure& figure : {figures[0], figures[1]}) page.plots.push_back(table.learning(figure));
-    page.details.push_back(trials_table(runs));
+    page.details.push_back(trials_table(runs, notes));
     return page;
 }
 

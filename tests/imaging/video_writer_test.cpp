@@ -123,6 +123,25 @@ TEST_F(Video, WithoutAFrameIsAnErrorAndLeavesNothing) {
     EXPECT_EQ(files(), 0U);
 }
 
+TEST_F(Video, ACodecThatIsNotThereIsToldWithThoseThatAre) {
+    const auto fault = [&](const char* name, const char* codec) -> std::string {
+        try {
+            VideoWriter(file(name), 128, 64, 15.0, codec);
+        } catch (const UserError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_NE(fault("a.mp4", "h265").find("there is no codec 'h265'; known are h264, mpeg4, ffv1"), std::string::npos)
+        << fault("a.mp4", "h265");
+    EXPECT_NE(fault("a.avi", "h264").find("goes into a file .mp4"), std::string::npos);
+    EXPECT_NE(fault("a.mp4", "ffv1").find("goes into a file .avi"), std::string::npos);
+    EXPECT_EQ(files(), 0U);
+    VideoWriter part2(file("b.mp4"), 128, 64, 15.0, "mpeg4");
+    EXPECT_EQ(part2.codec(), "mp4v");
+    EXPECT_EQ(VideoWriter(file("c.avi"), 128, 64, 15.0, "ffv1").codec(), "FFV1");
+}
+
 TEST_F(Video, OddSizesUnknownEndingsAndMissingFoldersAreRefused) {
     EXPECT_THROW(VideoWriter(file("a.mp4"), 127, 64, 15.0), UserError);
     EXPECT_THROW(VideoWriter(file("a.mp4"), 128, 63, 15.0), UserError);
@@ -131,6 +150,7 @@ TEST_F(Video, OddSizesUnknownEndingsAndMissingFoldersAreRefused) {
     EXPECT_THROW(VideoWriter(file("a.mp4"), 128, 64, 0.0), UserError);
     EXPECT_THROW(VideoWriter(file("missing/a.mp4"), 128, 64, 15.0), UserError);
     EXPECT_THROW(VideoWriter("/proc/a.mp4", 128, 64, 15.0), UserError);
+    EXPECT_THROW(VideoWriter("/dev/full/a.mp4", 128, 64, 15.0), UserError);
     EXPECT_EQ(files(), 0U);
 }
 

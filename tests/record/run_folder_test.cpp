@@ -115,6 +115,21 @@ TEST_F(RunFolder, AnUnchangedInputTakesNoLine) {
     EXPECT_EQ(read_lines(out + "/inputs.jsonl", true).size(), 3U);
 }
 
+TEST_F(RunFolder, ACommandOutOfRangeIsKeptAsTheStepTakesItAndCanBeReadBack) {
+    const std::string out = folder.path("run");
+    prepare_run_folder(out, false);
+    RunWriter writer(out, manifest(), {});
+    Input wanted;
+    wanted.advance = 1e6;
+    wanted.distal_bend = std::numeric_limits<double>::quiet_NaN();
+    writer.input(0, wanted);
+    writer.hash(1, {});
+    writer.finish(1, true, 0, "");
+    const Input kept = read_run(out).input_at(0);
+    EXPECT_EQ(kept.advance, in_range(wanted).advance);
+    EXPECT_EQ(kept.distal_bend, find_action("distal_bend")->default_value);
+}
+
 TEST_F(RunFolder, AStoppedRunIsMarkedIncompleteAndCanBeReplayed) {
     const RunRecord run = read_run(record(70, false));
     EXPECT_FALSE(run.manifest.complete);

@@ -143,6 +143,24 @@ TEST(Fluoroscopy, AnUnknownMaterialIsNamedBeforeTheFirstFrame) {
     }
 }
 
+TEST(Fluoroscopy, WhatReachesBehindTheSourceIsToldBeforeThePicture) {
+    FrameRenderer renderer(make_gl_target());
+    Image8 out;
+    FrameDescription f = patient();
+    f.view.source = Vec3(0, 60, 0);  // within the slab of 200 mm
+    try {
+        renderer.render(f, out);
+        ADD_FAILURE() << "a source within the patient drew a picture";
+    } catch (const UserError& error) {
+        EXPECT_NE(std::string(error.what()).find("patient's water reaches 41 mm behind the X-ray source"),
+                  std::string::npos)
+            << error.what();
+    }
+    f = patient();
+    f.devices[0].points[0] = Vec3(0, 900, 0);
+    EXPECT_THROW(renderer.render(f, out), UserError);
+}
+
 TEST(Target, EglDrawsWhatOsmesaDraws) {
     std::unique_ptr<GlTarget> egl;
     try {

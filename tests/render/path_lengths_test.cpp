@@ -34,7 +34,7 @@ PathLengths by_gl(const CArmView& view, const std::vector<TriMesh>& meshes, int 
 }
 
 PathLengths by_raster(const CArmView& view, const std::vector<TriMesh>& meshes, int size,
-                      const std::vector<double>& values = {}) {
+                      const std::vector<double>& values = {}, const std::vector<double>& widths = {}) {
     TriMesh all;
     for (const TriMesh& mesh : meshes) {
         const Triangle shift = Triangle::Constant(static_cast<Index>(all.vertices.size()));
@@ -43,7 +43,7 @@ PathLengths by_raster(const CArmView& view, const std::vector<TriMesh>& meshes, 
     }
     PathRaster raster;
     PathLengths out;
-    raster.draw(Projection(view, size, size), all.vertices, all.triangles, values, out);
+    raster.draw(Projection(view, size, size), all.vertices, all.triangles, values, out, widths);
     return out;
 }
 
@@ -176,6 +176,30 @@ TEST(PathRaster, OfTwoVesselsBehindOneAnotherEachHasItsOwnMedium) {
         most = std::max<double>(most, alone.contrast_mm_mg_ml.values[i]);
     }
     EXPECT_NEAR(most, 40 * 100, 40);  // through the middle
+}
+
+TEST(PathRaster, OfTwoVesselsInOneEachEndCountsByItsWidth) {
+    // A ball whose near half is the end of a branch and whose far half the wall of a wide vessel.
+    const CArmView v = view(0, 120);
+    const Vec3 axis = (v.detector_center - v.source).normalized();
+    const TriMesh ball = sphere(Vec3::Zero(), 30, 60);
+    std::vector<double> values, widths, even;
+    for (const Vec3& p : ball.vertices) {
+        const bool branch = p.dot(axis) < 0.0;
+        values.push_back(branch ? 320.0 : 70.0);
+        widths.push_back(branch ? 2.0 : 15.0);
+        even.push_back(15.0);
+    }
+    const PathLengths drawn = by_raster(v, {ball}, 128, values, widths);
+    const PathLengths trapezoid = by_raster(v, {ball}, 128, values, even);
+    const PathLengths plain = by_raster(v, {ball}, 128, values);
+    const double length = drawn.length_mm.at(64, 64);
+    EXPECT_NEAR(drawn.contrast_mm_mg_ml.at(64, 64), length * (2.0 * 320.0 + 15.0 * 70.0) / 17.0, 0.01 * length);
+    EXPECT_NEAR(trapezoid.contrast_mm_mg_ml.at(64, 64), length * 195.0, 0.01 * length);
+    for (std::size_t i = 0; i < plain.contrast_mm_mg_ml.values.size(); ++i) {
+        const float p = plain.contrast_mm_mg_ml.values[i];
+        EXPECT_NEAR(trapezoid.contrast_mm_mg_ml.values[i], p, 1e-4F * (1.0F + p));
+    }
 }
 
 TEST(PathRaster, ASurfaceFinerThanThePixelsIsClosedAndKeepsItsVolume) {

@@ -47,5 +47,31 @@ TEST(ForceMaps, AreDrawnToOneScaleByTheMeanOfARun) {
     EXPECT_DOUBLE_EQ(maps[1].values[4 * 2 + 1], 3.0);
 }
 
+RunEntry trial(const std::string& participant, double play_time_s) {
+    RunEntry run;
+    run.folder = "runs/" + participant + "/a-1";
+    run.participant = participant;
+    run.group = "expert";
+    run.task = "a";
+    run.trial = 1;
+    run.metrics["play_time_s"] = play_time_s;
+    return run;
+}
+
+TEST(StudyPage, LeadsToEachTrialAndSaysWhichOfThemWereVerified) {
+    const Protocol protocol{"s", {"expert"}, {"a"}, 1};
+    const std::vector<RunEntry> runs{trial("P01", 10.0), trial("P02", 20.0)};
+    const std::string silent = html_page(study_page(protocol, {}, runs));
+    EXPECT_NE(silent.find("Not verified"), std::string::npos);
+    EXPECT_EQ(silent.find("href"), std::string::npos);
+    const std::string page = html_page(
+        study_page(protocol, {}, runs,
+                   {{runs[0].folder, {"trials/P01-a-1.html", "yes"}}, {runs[1].folder, {"", "a & b differ"}}}));
+    EXPECT_NE(page.find("<a href=\"trials/P01-a-1.html\">runs/P01/a-1</a>"), std::string::npos);
+    EXPECT_NE(page.find("<td>runs/P02/a-1</td>"), std::string::npos);
+    EXPECT_NE(page.find("of 2 runs stepped again from their inputs, 1 agree"), std::string::npos);
+    EXPECT_NE(page.find("a &amp; b differ"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace cathlab
