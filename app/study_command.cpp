@@ -198,27 +198,29 @@ public:
     TrialNotes(const StudyOptions& options, const std::string& out, const AppContext& context)
         : options_(options), out_(out), context_(context) {}
 
-    /// Writes the trial's page.  What hinders it or differs is said in the note; throws UserError where the page
-    /// cannot be written or a stop was wanted.
-    TrialNote make(const RunEntry& run) {
+    /// Writes the trial's page.  What differs is said in the note, what hinders the reading in `left_out` too; throws
+    /// UserError where the page cannot be written or a stop was wanted.
+    TrialNote make(const RunEntry& run, std::string& left_out) {
         TrialNote note;
-        std::vector<TrialFrame> frames;
+        std::string page;
         try {
             const RunRecord record = read_run(options_.folder + "/" + run.folder);
             const SceneSpec scene = recorded_scene(record, context_);
             const auto models = models_of(scene);
             if (options_.verify) note.verified = verify(record, scene, *models);
-            frames = frames_of(record, scene);
+            const std::vector<TrialFrame> frames = frames_of(record, scene);
             note.page = "trials/" + run.participant + "-" + run.task + "-" + std::to_string(run.trial) + ".html";
             const std::string verified = note.verified == "yes"  ? "verified: its inputs give the same run"
                                          : note.verified.empty() ? ""
                                                                  : "NOT VERIFIED: " + note.verified;
-            write_whole_file(out_ + "/" + note.page,
-                             trial_page(run, anatomy_of(*models).centreline, frames, verified, "../report.html"));
+            page = trial_page(run, anatomy_of(*models).centreline, frames, verified, "../report.html");
         } catch (const UserError& error) {
             if (stop_wanted()) throw;
+            left_out = std::string("a trial's page: ") + error.what();
             if (options_.verify) note.verified = error.what();
+            return note;
         }
+        write_whole_file(out_ + "/" + note.page, page);
         return note;
     }
 
@@ -227,7 +229,9 @@ private:
 
     std::shared_ptr<const SceneModels> models_of(const SceneSpec& scene) {
         const std::scoped_lock lock(mutex_);
-        auto& models = models_[scene.path];
+        std::string key = scene.path;
+        for (const std::string& overlay : scene.overlays) key += "\n" + overlay;
+        auto& models = models_[key];
         if (!models) models = session_models(scene, options_.threads, context_);
         return models;
     }
@@ -256,7 +260,7 @@ private:
     std::string out_;
     const AppContext& context_;
     std::mutex mutex_;
-    std::map<std::string, std::shared_ptr<const SceneModels>> models_;  // by the scene's path
+    std::map<std::string, std::shared_ptr<const SceneModels>> models_;  // by the scene and its overlays
 };
 
 void make_folder(const std::string& path) {
@@ -277,8 +281,9 @@ void report(const StudyOptions& options, AppContext& context) {
     make_folder(out + "/trials");
     TrialNotes made(options, out, context);
     std::vector<TrialNote> note(runs.size());
+    std::vector<std::string> pageless(runs.size());
     each_at_once(options.verify ? "verifying" : "drawing", runs.size(), options.threads, [&](std::size_t k) {
-        note[k] = made.make(runs[k]);
+        note[k] = made.make(runs[k], pageless[k]);
         return true;
     });
     if (stop_wanted()) throw UserError("stopped; no report was written");
@@ -288,6 +293,7 @@ void report(const StudyOptions& options, AppContext& context) {
             std::printf("DIFFERS: %s: %s\n", runs[k].folder.c_str(), note[k].verified.c_str());
             context.exit_code = 1;
         }
+        if (!pageless[k].empty()) left_out.push_back(std::move(pageless[k]));
         notes[runs[k].folder] = std::move(note[k]);
     }
     Page page = study_page(protocol, participants, runs, notes);

@@ -47,7 +47,8 @@ constexpr double pushed_out_mm = 0.2;
 // Within a step the lumen surface follows the wall up to this far from the devices.
 constexpr double surface_reach_mm = 4.5;
 // ... and for a look at the true depth up to this far from what presses: no closest point asks further
-// (closest_point.h), and the wall has moved a little since its boxes were fitted.
+// (closest_point.cpp, hint_reach_mm and what is added to it), and the wall has moved a little since its boxes were
+// fitted.
 constexpr double true_depth_reach_mm = 7.5;
 
 void command_wire(Parts& p, const Input& input, double h, StepSums& sums) {
