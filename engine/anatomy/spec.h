@@ -17,8 +17,8 @@ namespace cathlab {
 /// A part of the wall with its own thickness, force limit and particle spacing.
 struct RegionSpec {
     std::string name;
-    double wall_thickness_mm = 1.0;  ///< [0.1, 5]
-    double force_limit_n = 0.8;      ///< [0.01, 100]
+    double wall_thickness_mm = 1.0;    ///< [0.1, 5]
+    double force_limit_n = 0.8;        ///< [0.01, 100]
     double particle_spacing_mm = 0.0;  ///< 0 = the anatomy's, or [0.2, 10]
     SourcePlace where;
 

@@ -1,4 +1,5 @@
-// Everything that an operator can do, declared once: name, unit, how a script's rows are interpolated, default, least, most, meaning.
+// Everything that an operator can do, declared once: name, unit, how a script's rows are interpolated, default, least,
+// most, meaning.
 // hold = a row's value stays until the action's next row; linear = straight line from row to row.
 // clang-format off
 CATHLAB_ACTION(device,                 "1",     hold,   0.0,    0.0,   1.0, "the device that advance and rotate move: 0 or 'wire', 1 or 'catheter'")

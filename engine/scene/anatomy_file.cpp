@@ -18,7 +18,8 @@ Table<RegionSpec> region_table() {
         .number("force_limit_n", &RegionSpec::force_limit_n, "N", {0.01, 100.0},
                 "largest force allowed on it: force bar = 1")
         .number("particle_spacing_mm", &RegionSpec::particle_spacing_mm, "mm", {0.2, 10.0},
-                "wanted distance of wall particles, the scene's where absent; lowered where fewer than eight would go round")
+                "wanted distance of wall particles, the scene's where absent; lowered where fewer than eight would go "
+                "round")
         .place(&RegionSpec::where);
 }
 

@@ -26,6 +26,20 @@ struct Acting {
 
 using History = std::function<double(double t)>;  // kPa by the section at rest
 
+WallParameters elastic_wall() {
+    WallParameters parameters;
+    parameters.form = WallForm::elastic;
+    parameters.young_kpa = young_kpa;
+    parameters.poisson = poisson;
+    return parameters;
+}
+
+Specimen elastic_specimen(const WallRig& rig) {
+    SceneWall scene;
+    scene.form = "elastic";
+    return make_specimen(rig, scene);
+}
+
 /// Strains at times k `every` of a block of particles that is stepped under the load.
 std::vector<double> stepped(const char* name, const std::vector<double>& values, const History& load, double end_s,
                             int every) {
@@ -33,13 +47,8 @@ std::vector<double> stepped(const char* name, const std::vector<double>& values,
     WallRig rig;
     rig.kind = RigKind::block;
     rig.length_mm = rig.width_mm = 12.0;
-    SceneWall scene;
-    scene.form = "elastic";
-    const Specimen specimen = make_specimen(rig, scene);
-    WallParameters parameters;
-    parameters.form = WallForm::elastic;
-    parameters.young_kpa = young_kpa;
-    parameters.poisson = poisson;
+    const Specimen specimen = elastic_specimen(rig);
+    WallParameters parameters = elastic_wall();
     parameters.damping_per_s = 0.0;
     parameters.surrounding_kpa_s_per_mm = 1e-4;  // keeps a piece that nothing holds where it is
     const SoftBodyModel wall = build_soft_body(specimen.sample, parameters, {});
@@ -136,14 +145,8 @@ TEST(WallEffects, AreTheSameInTheStepsAsInTheClosedForm) {
 TEST(WallEffects, ARingInTissueWidensByWhatRingAndTissueBearTogether) {
     WallRig rig;
     rig.kind = RigKind::ring;
-    SceneWall scene;
-    scene.form = "elastic";
-    const Specimen specimen = make_specimen(rig, scene);
-    WallParameters parameters;
-    parameters.form = WallForm::elastic;
-    parameters.young_kpa = young_kpa;
-    parameters.poisson = poisson;
-    const SoftBodyModel wall = build_soft_body(specimen.sample, parameters, {});
+    const Specimen specimen = elastic_specimen(rig);
+    const SoftBodyModel wall = build_soft_body(specimen.sample, elastic_wall(), {});
     const Gauge& gauge = specimen.gauges[0];
     const Workers workers(1);
     const auto strain = [&](double tissue, double stress) {
