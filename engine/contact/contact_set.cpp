@@ -21,7 +21,7 @@ constexpr std::size_t samples_together = 4;
 constexpr double ball_mm = 12.0;
 
 // Rows that are worth a thread of their own.
-constexpr std::size_t row_grain = 96;
+constexpr std::size_t row_grain = 48;
 
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
@@ -69,6 +69,16 @@ void warm_start(std::span<ChainRow> rows, std::span<const ChainRow> old_rows) {
         row.tangent_force = into_cone(tangential(old.tangent_force, row.normal), row.friction * row.multiplier);
         row.held = tangential(old.held, row.normal);
     }
+}
+
+/// Particles that the corners of a triangle are bound to, at most.
+std::size_t particles_at(const LumenSurfaceModel& model, Index triangle) {
+    std::size_t sum = 0;
+    for (int corner = 0; corner < 3; ++corner) {
+        const std::size_t v = at(model.triangles[at(triangle)][corner]);
+        sum += at(model.binding.start[v + 1] - model.binding.start[v]);
+    }
+    return sum;
 }
 
 /// Leaves for sample `first` (in the order of `place`) and those after it that lie in one small ball; the number of the
@@ -221,87 +231,128 @@ void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState&
         }
     });
 
-    slot_.resize(particle_compliance.size(), 0);
+    // Rows, one sample beside the other: where each one's begin is known, and how many particles they may need at most.
     memory_.triangle.assign(n, -1);
     memory_.outside.assign(n, 0);
+    memory_.device.resize(n);
+    memory_.arc.resize(n);
+    memory_.first_row.resize(n + 1);
     sample_before_.resize(n);
+    std::size_t count = 0;
     for (std::size_t i = 0; i < n; ++i) {
-        const std::int64_t place = memory_.place[i];
-        const DeviceSample& s = samples[at(place)];
-        memory_.device.push_back(s.device);
-        memory_.arc.push_back(s.arc_mm);
-        memory_.first_row.push_back(static_cast<std::int64_t>(rows_.size()));
-        memory_.triangle[at(place)] = found[i].hint;
-        memory_.outside[at(place)] = found[i].outside ? 1 : 0;
-        sample_before_[at(place)] = s.previous;
-        for (int k = 0; k < found[i].count; ++k) {
-            const SurfacePoint& at_wall = found[i].wall[static_cast<std::size_t>(k)];
-            WallRow wall;
-            wall.sample = static_cast<Index>(place);
-            wall.device = s.device;
-            wall.triangle = at_wall.triangle;
-            wall.region = model.triangle_region[at(at_wall.triangle)];
-            wall.kinematic = s.kinematic;
-            wall.radius = s.radius;
-            wall.arc_mm = s.arc_mm;
-            wall.barycentric = at_wall.barycentric;
-            wall.begin = particle_.size();
-            for (int corner = 0; corner < 3; ++corner) {
-                const std::size_t v = at(model.triangles[at(at_wall.triangle)][corner]);
-                for (Index b = model.binding.start[v]; b < model.binding.start[v + 1]; ++b) {
-                    const Index particle = model.binding.particle[at(b)];
-                    const double weight = at_wall.barycentric[corner] * model.binding.weight[at(b)];
-                    std::size_t& slot = slot_[at(particle)];
-                    if (slot >= wall.begin && slot < particle_.size() && particle_[slot] == particle) {
-                        weight_[slot] += weight;
-                    } else if (weight != 0.0) {
-                        slot = particle_.size();
-                        particle_.push_back(particle);
-                        weight_.push_back(weight);
-                    }
-                }
-            }
-            wall.end = particle_.size();
-            for (std::size_t j = wall.begin; j < wall.end; ++j) {
-                wall.point_before += weight_[j] * particles_before[at(particle_[j])];
-            }
-            wall.point = at_wall.point;
-            wall.found = s.position - at_wall.point;
-            wall.separation = wall.found;
-            ChainRow row;
-            row.link = s.link;
-            row.normal = k == 0 ? found[i].smooth : at_wall.inward_normal;
-            wall.offset = row.normal.dot(s.position - at_wall.point) - (at_wall.signed_distance - s.radius);
-            row.gap = at_wall.signed_distance - s.radius;
-            row.friction = s.friction;
-            rows_.push_back(row);
-            wall_.push_back(wall);
-        }
-        if (remembered[i] >= 0) {
-            const auto first = at(old_memory.first_row[at(remembered[i])]);
-            const auto last = at(old_memory.first_row[at(remembered[i]) + 1]);
-            warm_start(std::span<ChainRow>(rows_).last(static_cast<std::size_t>(found[i].count)),
-                       std::span<const ChainRow>(old_rows).subspan(first, last - first));
-        }
+        memory_.first_row[i] = static_cast<std::int64_t>(count);
+        count += static_cast<std::size_t>(found[i].count);
     }
-    memory_.first_row.push_back(static_cast<std::int64_t>(rows_.size()));
-    set_compliance(particle_compliance);
+    memory_.first_row[n] = static_cast<std::int64_t>(count);
+    rows_.resize(count);
+    wall_.resize(count);
+    room_.resize(count + 1);
+    room_[0] = 0;
+    for (std::size_t i = 0; i < n; ++i)
+        for (int k = 0; k < found[i].count; ++k) {
+            const std::size_t r = at(memory_.first_row[i]) + static_cast<std::size_t>(k);
+            room_[r + 1] = room_[r] + particles_at(model, found[i].wall[static_cast<std::size_t>(k)].triangle);
+        }
+    particle_.resize(room_.back());
+    weight_.resize(room_.back());
+    workers.for_ranges(n, 2 * samples_together, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t place = at(memory_.place[i]);
+            const DeviceSample& s = samples[place];
+            memory_.device[i] = s.device;
+            memory_.arc[i] = s.arc_mm;
+            memory_.triangle[place] = found[i].hint;
+            memory_.outside[place] = found[i].outside ? 1 : 0;
+            sample_before_[place] = s.previous;
+            const std::size_t first = at(memory_.first_row[i]);
+            for (int k = 0; k < found[i].count; ++k)
+                make_row(model, s, found[i], k, static_cast<Index>(place), particles_before,
+                         first + static_cast<std::size_t>(k));
+            if (remembered[i] < 0) continue;
+            const std::size_t old_first = at(old_memory.first_row[at(remembered[i])]);
+            const std::size_t old_last = at(old_memory.first_row[at(remembered[i]) + 1]);
+            warm_start(std::span<ChainRow>(rows_).subspan(first, static_cast<std::size_t>(found[i].count)),
+                       std::span<const ChainRow>(old_rows).subspan(old_first, old_last - old_first));
+        }
+    });
+    close_ranks();
+    set_compliance(particle_compliance, workers);
 }
 
-void ContactSet::set_compliance(std::span<const double> particle_compliance) {
+void ContactSet::make_row(const LumenSurfaceModel& model, const DeviceSample& s, const Found& found, int k, Index place,
+                          std::span<const Vec3> particles_before, std::size_t r) {
+    const SurfacePoint& at_wall = found.wall[static_cast<std::size_t>(k)];
+    WallRow& wall = wall_[r];
+    wall.sample = place;
+    wall.device = s.device;
+    wall.triangle = at_wall.triangle;
+    wall.region = model.triangle_region[at(at_wall.triangle)];
+    wall.kinematic = s.kinematic;
+    wall.radius = s.radius;
+    wall.arc_mm = s.arc_mm;
+    wall.barycentric = at_wall.barycentric;
+    wall.begin = wall.end = room_[r];
+    for (int corner = 0; corner < 3; ++corner) {
+        const std::size_t v = at(model.triangles[at(at_wall.triangle)][corner]);
+        for (Index b = model.binding.start[v]; b < model.binding.start[v + 1]; ++b) {
+            const Index particle = model.binding.particle[at(b)];
+            const double weight = at_wall.barycentric[corner] * model.binding.weight[at(b)];
+            std::size_t slot = wall.begin;  // neighbours share most of their particles
+            while (slot < wall.end && particle_[slot] != particle) ++slot;
+            if (slot < wall.end) {
+                weight_[slot] += weight;
+            } else if (weight != 0.0) {
+                particle_[wall.end] = particle;
+                weight_[wall.end++] = weight;
+            }
+        }
+    }
+    wall.point_before = Vec3::Zero();
+    for (std::size_t j = wall.begin; j < wall.end; ++j)
+        wall.point_before += weight_[j] * particles_before[at(particle_[j])];
+    wall.point = at_wall.point;
+    wall.found = s.position - at_wall.point;
+    wall.separation = wall.found;
+    ChainRow& row = rows_[r];
+    row.link = s.link;
+    row.normal = k == 0 ? found.smooth : at_wall.inward_normal;
+    wall.offset = row.normal.dot(s.position - at_wall.point) - (at_wall.signed_distance - s.radius);
+    row.gap = at_wall.signed_distance - s.radius;
+    row.friction = s.friction;
+}
+
+// The rows' particles without the places that none of them took.
+void ContactSet::close_ranks() {
+    std::size_t last = 0;
+    for (WallRow& wall : wall_) {
+        const std::size_t begin = last;
+        for (std::size_t j = wall.begin; j < wall.end; ++j, ++last) {
+            particle_[last] = particle_[j];
+            weight_[last] = weight_[j];
+        }
+        wall.begin = begin;
+        wall.end = last;
+    }
+    particle_.resize(last);
+    weight_.resize(last);
+}
+
+void ContactSet::set_compliance(std::span<const double> particle_compliance, const Workers& workers) {
     touching_.resize(particle_compliance.size(), 0);
     for (std::size_t r = 0; r < rows_.size(); ++r) {
         if (wall_[r].kinematic || !(rows_[r].multiplier > 0.0 || rows_[r].gap < near_mm)) continue;
         for (std::size_t j = wall_[r].begin; j < wall_[r].end; ++j) ++touching_[at(particle_[j])];
     }
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-        double compliance = 0.0;
-        for (std::size_t j = wall_[r].begin; j < wall_[r].end; ++j) {
-            const std::size_t p = at(particle_[j]);
-            compliance += weight_[j] * weight_[j] * particle_compliance[p] * std::max<Index>(1, touching_[p]);
+    workers.for_ranges(rows_.size(), row_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t r = begin; r < end; ++r) {
+            double compliance = 0.0;
+            for (std::size_t j = wall_[r].begin; j < wall_[r].end; ++j) {
+                const std::size_t p = at(particle_[j]);
+                compliance += weight_[j] * weight_[j] * particle_compliance[p] * std::max<Index>(1, touching_[p]);
+            }
+            rows_[r].compliance = std::max(compliance, settings_.min_compliance_mm_per_mn);
         }
-        rows_[r].compliance = std::max(compliance, settings_.min_compliance_mm_per_mn);
-    }
+    });
     for (const Index p : particle_) touching_[at(p)] = 0;
 }
 

@@ -181,7 +181,11 @@ private:
 
     Found look(const LumenSurfaceModel& model, const LumenSurfaceState& surface, const DeviceSample& sample, Index hint,
                bool known_inside, double margin, const NearLeaves& near) const;
-    void set_compliance(std::span<const double> particle_compliance);
+    /// Row r: sample `s` (at `place` in its span) against the k-th of the walls that it found.
+    void make_row(const LumenSurfaceModel& model, const DeviceSample& s, const Found& found, int k, Index place,
+                  std::span<const Vec3> particles_before, std::size_t r);
+    void close_ranks();
+    void set_compliance(std::span<const double> particle_compliance, const Workers& workers);
 
     ContactSettings settings_;
     std::vector<ChainRow> rows_;
@@ -189,7 +193,7 @@ private:
     std::vector<Vec3> sample_before_;  ///< by place
     std::vector<Index> particle_;
     std::vector<double> weight_;
-    std::vector<std::size_t> slot_;  ///< (particles) where detect put a particle last; any value is right at first
+    std::vector<std::size_t> room_;  ///< in detect: where the particles of a row begin before they close ranks
     std::vector<Index> touching_;    ///< N_j, one a particle; zero outside set_compliance
     Memory memory_;
 };

@@ -7,14 +7,16 @@
 
 namespace cathlab {
 
-/// A pool of workers for one world.  threads = 1 runs everything in the caller.  Copies share the pool.
+/// A pool of workers for one world.  threads = 1 runs everything in the caller.  Copies share the pool; a loop within a
+/// loop, or beside one of another thread, runs in its caller.
 class Workers {
 public:
     explicit Workers(int threads = 1);
     int threads() const;
 
     /// Calls body(begin, end) on disjoint ranges that cover [0, count); ranges hold at least `grain` items.
-    /// body must write only what belongs to its range (gather, not scatter).  Exceptions pass through to the caller.
+    /// body must write only what belongs to its range (gather, not scatter).  An exception passes through to the
+    /// caller, the one of the lowest range where several throw at once.
     void for_ranges(std::size_t count, std::size_t grain,
                     const std::function<void(std::size_t begin, std::size_t end)>& body) const;
 
@@ -24,8 +26,8 @@ public:
                          const std::function<void(std::size_t begin, std::size_t end)>& body) const;
 
 private:
-    template <class Partitioner>
-    void run(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) const;
+    void run(std::size_t count, std::size_t grain, std::size_t most_parts,
+             const std::function<void(std::size_t, std::size_t)>& body) const;
     struct Pool;
     std::shared_ptr<Pool> pool_;  // null for one thread
 };

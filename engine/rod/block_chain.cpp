@@ -33,15 +33,16 @@ inline void subtract(Column& c, const double* v, double s, int first) {
 
 }  // namespace
 
-void BlockChain::factor_block(const Mat6& diagonal, const Factor* before, Factor& f) {
+void BlockChain::factor_block(const Mat6& diagonal, const Factor* ahead, const Factor* behind, Factor& f) {
     Column unscaled[6];  // L_k d_k
 #pragma GCC unroll 6
     for (int c = 0; c < 6; ++c) {
         const int top = c / 2;  // rows above the diagonal are left as they come
         Column column = load(diagonal.col(c).data());
-        if (before != nullptr) {
+        for (const Factor* other : {ahead, behind}) {
+            if (other == nullptr) continue;
 #pragma GCC unroll 6
-            for (int k = 0; k < 6; ++k) subtract(column, before->z[k], before->w[k][c], top);
+            for (int k = 0; k < 6; ++k) subtract(column, other->z[k], other->w[k][c], top);
         }
 #pragma GCC unroll 6
         for (int k = 0; k < c; ++k) {
@@ -70,38 +71,37 @@ void BlockChain::cross_block(const Mat6& below, Factor& f) {
 }
 
 void BlockChain::resize(std::size_t blocks) {
-    diagonal.assign(blocks, Mat6::Zero());
-    below.assign(blocks, Mat6::Zero());
-    right.assign(blocks, Vec6::Zero());
+    diagonal.resize(blocks);
+    below.resize(blocks);
+    right.resize(blocks);
     solution.resize(blocks);
     factor_.resize(blocks);
 }
 
-void BlockChain::factor_and_solve(std::size_t first) {
-    const std::size_t n = size();
-    for (std::size_t i = first; i < n; ++i) {
-        Factor& f = factor_[i];
-        factor_block(diagonal[i], i > 0 ? &factor_[i - 1] : nullptr, f);
-        if (i + 1 < n) cross_block(below[i], f);
-        Column y = load(right[i].data());
-        if (i > 0)
-            for (int k = 0; k < 6; ++k) subtract(y, factor_[i - 1].w[k], factor_[i - 1].y[k], 0);
-        store(f.y, y);
-        for (int k = 0; k < 5; ++k)
-            for (int r = k + 1; r < 6; ++r) f.y[r] -= f.l[k][r] * f.y[k];
+void BlockChain::factor(std::size_t i, const Factor* ahead, const Factor* behind) {
+    Factor& f = factor_[i];
+    factor_block(diagonal[i], ahead, behind, f);
+    Column y = load(right[i].data());
+    for (const Factor* other : {ahead, behind}) {
+        if (other == nullptr) continue;
+        for (int k = 0; k < 6; ++k) subtract(y, other->w[k], other->y[k], 0);
     }
-    for (std::size_t i = n; i-- > 0;) {
-        const Factor& f = factor_[i];
-        double d[6];
-        for (int c = 0; c < 6; ++c) {
-            d[c] = f.y[c] * f.inverse[c];
-            if (i + 1 < n)
-                for (int r = 0; r < 6; ++r) d[c] -= f.w[c][r] * solution[i + 1][r];
-        }
-        for (int c = 4; c >= 0; --c)
-            for (int r = c + 1; r < 6; ++r) d[c] -= f.l[c][r] * d[r];
-        std::copy(d, d + 6, solution[i].data());
+    store(f.y, y);
+    for (int k = 0; k < 5; ++k)
+        for (int r = k + 1; r < 6; ++r) f.y[r] -= f.l[k][r] * f.y[k];
+}
+
+void BlockChain::substitute(std::size_t i, const Vec6* neighbour) {
+    const Factor& f = factor_[i];
+    double d[6];
+    for (int c = 0; c < 6; ++c) {
+        d[c] = f.y[c] * f.inverse[c];
+        if (neighbour == nullptr) continue;
+        for (int r = 0; r < 6; ++r) d[c] -= f.w[c][r] * (*neighbour)[r];
     }
+    for (int c = 4; c >= 0; --c)
+        for (int r = c + 1; r < 6; ++r) d[c] -= f.l[c][r] * d[r];
+    std::copy(d, d + 6, solution[i].data());
 }
 
 }  // namespace cathlab

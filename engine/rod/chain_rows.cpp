@@ -151,19 +151,22 @@ bool ChainRows::update_friction(Work& w, const Vec6& d, int pass) const {
     return true;
 }
 
-std::size_t ChainRows::update(const std::vector<Vec6>& solution, int pass) {
-    std::size_t first = free_links_;
-    for (std::size_t i = 0; i <= free_links_; ++i) {
-        const Vec6 d = i < free_links_ ? solution[i] : Vec6::Zero().eval();
-        bool changed = false;
-        for (std::size_t k = start_[i]; k < start_[i + 1]; ++k) {
-            Work& w = work_[order_[k]];
-            changed |= update_normal(w, d, pass < engaging_passes);
-            changed |= update_friction(w, d, pass);
-        }
-        if (changed && first == free_links_) first = i;
+bool ChainRows::update_rows(std::size_t place, const Vec6& d, int pass) {
+    bool changed = false;
+    for (std::size_t k = start_[place]; k < start_[place + 1]; ++k) {
+        Work& w = work_[order_[k]];
+        changed |= update_normal(w, d, pass < engaging_passes);
+        changed |= update_friction(w, d, pass);
     }
-    return first;
+    return changed;
+}
+
+bool ChainRows::update(std::size_t link, const Vec6& moved, int pass) {
+    return update_rows(link, moved, pass);
+}
+
+void ChainRows::update_held(int pass) {
+    update_rows(free_links_, Vec6::Zero(), pass);
 }
 
 Vec3 ChainRows::side_force(const std::vector<Vec6>& solution) const {

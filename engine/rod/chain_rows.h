@@ -33,10 +33,13 @@ public:
     /// Adds the rows of link i in their current state to its block.
     void add_to(std::size_t link, Mat6& diagonal, Vec6& right) const;
 
-    /// Reads the solution, finds each row's forces, and changes the state of rows whose assumption failed.  Returns the
-    /// first link whose block must be built anew, or free_links when all hold.  `pass` counts from 0: the first passes
-    /// may engage and release rows, later ones only take force away, so that the loop ends.
-    std::size_t update(const std::vector<Vec6>& solution, int pass);
+    /// Reads a link's part of the solution, finds the forces of its rows, and changes the state of those whose
+    /// assumption failed: true where the link's block must be built anew.  `pass` counts from 0: the first passes may
+    /// engage and release rows, later ones only take force away, so that the loop ends.  Links are independent of each
+    /// other: any thread may ask for any of them.
+    bool update(std::size_t link, const Vec6& moved, int pass);
+    /// The same for the rows on links that are held, which no block has.
+    void update_held(int pass);
 
     /// Sum of the side drags' forces on the links in the last update, mN.
     Vec3 side_force(const std::vector<Vec6>& solution) const;
@@ -61,6 +64,7 @@ private:
     void set_rub(Work& w, double load, const Vec3& slip, double share) const;
     bool update_normal(Work& w, const Vec6& d, bool may_engage) const;
     bool update_friction(Work& w, const Vec6& d, int pass) const;
+    bool update_rows(std::size_t place, const Vec6& d, int pass);
 
     std::vector<Work> work_;
     std::vector<std::size_t> start_, order_;  // rows of link i: order_[start_[i]] .. order_[start_[i + 1] - 1]

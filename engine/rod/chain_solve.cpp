@@ -29,7 +29,8 @@ constexpr int braking_passes = 12;
 constexpr double linear_swing_rad = 0.15;
 constexpr double most_swing_rad = 0.2;
 constexpr int newton_steps = 8;
-constexpr double first_guess = 0.1;  // of a joint's stiffness, for the brake of a swing
+constexpr double first_guess = 0.1;     // of a joint's stiffness, for the brake of a swing
+constexpr std::size_t link_grain = 32;  // links that are worth a thread of their own
 
 Mat3 hat(const Vec3& v) {
     Mat3 m;
@@ -42,13 +43,6 @@ Vec3 turn(const Quat& from, const Quat& to) {
     const Quat q = to * from.conjugate();
     return (q.w() < 0.0 ? -2.0 : 2.0) * q.vec();
 }
-
-struct JointNow {
-    Vec3 ta, tb, ra, rb, gap;
-    Vec3 u, g;
-    double twist = 0.0;  // c
-    Vec3 moment;         // of bend and twist, on a
-};
 
 JointNow joint_now(const Vec3& xa, const Quat& qa, double la, const Vec3& xb, const Quat& qb, double lb,
                    const JointStiffness& s) {
@@ -71,145 +65,160 @@ JointNow joint_now(const Vec3& xa, const Quat& qa, double la, const Vec3& xb, co
 
 }  // namespace
 
-void Rod::Impl::assemble_joint(std::size_t i, std::size_t free) {
-    const std::size_t b = i + 1;
-    const JointStiffness& s = world.joint(i);
-    const double la = links[i].length, lb = links[b].length;
-    const JointNow j = joint_now(x[i], q[i], la, x[b], q[b], lb, s);
-    const double k = s.axial;
-    const Vec3 pull = k * j.gap;
-    const Mat3 twist = s.twist * j.g * j.g.transpose();
-    const double string = 0.5 * std::max(0.0, tension[i]);
-    const auto add = [&](std::size_t link, const Vec3& r, const Vec3& t, const Vec3& pointer, double length) {
-        Mat6& d = system.diagonal[link];
+// What joints, inertia and drag put into the blocks of link i.
+void Rod::Impl::assemble_link(std::size_t i, double h) {
+    const double inertial = 1.0 / (h * h);
+    const double slowing = spec.damping_per_s / h, spin_slowing = spec.spin_damping_per_s / h;
+    const WireLink& link = links[i];
+    Mat6& d = system.diagonal[i];
+    Vec6& right_hand = system.right[i];
+    const Vec3 t = q[i] * Vec3::UnitZ();
+    const Mat3 inertia =
+        link.inertia_across * Mat3::Identity() + (link.inertia_along - link.inertia_across) * t * t.transpose();
+    d.setZero();
+    d.topLeftCorner<3, 3>().diagonal().array() += link.mass * (inertial + slowing);
+    d.bottomRightCorner<3, 3>() += (inertial + spin_slowing) * inertia;
+    right_hand.head<3>() = link.mass * (inertial * (x_predicted[i] - x[i]) + slowing * (x_start[i] - x[i])) + force[i];
+    right_hand.tail<3>() = -(inertia * (inertial * turn(q_predicted[i], q[i]) + spin_slowing * turn(q_start[i], q[i])));
+
+    const auto add = [&](std::size_t joint, const Vec3& r, const Vec3& along, const Vec3& pointer) {
+        const JointStiffness& s = world.joint(joint);
+        const JointNow& j = joints[joint];
+        const double k = s.axial, string = 0.5 * std::max(0.0, tension[joint]), length = link.length;
         d.topLeftCorner<3, 3>().diagonal().array() += k;
         d.bottomLeftCorner<3, 3>() += k * hat(r);
-        Mat3 m = twist - k * r * r.transpose() - (string * length) * t * t.transpose() -
-                 s.bend * pointer * pointer.transpose();
+        Mat3 m = s.twist * j.g * j.g.transpose() - k * r * r.transpose() -
+                 (string * length) * along * along.transpose() - s.bend * pointer * pointer.transpose();
         m.diagonal().array() += k * r.squaredNorm() + string * length + s.bend;
         d.bottomRightCorner<3, 3>() += m;
     };
-    add(i, j.ra, j.ta, j.u, la);
-    system.right[i].head<3>() += pull;
-    system.right[i].tail<3>() += j.ra.cross(pull) + j.moment;
-    if (b >= free) return;
-    add(b, j.rb, j.tb, j.tb, lb);
-    system.right[b].head<3>() -= pull;
-    system.right[b].tail<3>() -= j.rb.cross(pull) + j.moment;
+    if (i > 0) {
+        const JointNow& j = joints[i - 1];
+        const Vec3 pull = world.joint(i - 1).axial * j.gap;
+        add(i - 1, j.rb, j.tb, j.tb);
+        right_hand.head<3>() -= pull;
+        right_hand.tail<3>() -= j.rb.cross(pull) + j.moment;
+    }
+    const JointStiffness& s = world.joint(i);
+    const JointNow& j = joints[i];
+    const double k = s.axial;
+    const Vec3 pull = k * j.gap;
+    add(i, j.ra, j.ta, j.u);
+    right_hand.head<3>() += pull;
+    right_hand.tail<3>() += j.ra.cross(pull) + j.moment;
+    if (i + 1 == joints.size()) return;
     Mat6& e = system.below[i];
     e.topLeftCorner<3, 3>() = -k * Mat3::Identity();
     e.topRightCorner<3, 3>() = k * hat(j.ra);
     e.bottomLeftCorner<3, 3>() = -k * hat(j.rb);
-    Mat3 m = k * j.ra * j.rb.transpose() + s.bend * j.u * j.tb.transpose() - twist;
+    Mat3 m = k * j.ra * j.rb.transpose() + s.bend * j.u * j.tb.transpose() - s.twist * j.g * j.g.transpose();
     m.diagonal().array() -= k * j.ra.dot(j.rb) + s.bend * j.u.dot(j.tb);
     e.bottomRightCorner<3, 3>() = m;
 }
 
-void Rod::Impl::assemble(double h) {
+void Rod::Impl::assemble(double h, const Workers& workers) {
     const std::size_t free = free_count();
     system.resize(free);
-    const double inertial = 1.0 / (h * h);
-    const double drag = spec.damping_per_s / h, spin_drag = spec.spin_damping_per_s / h;
-    for (std::size_t i = 0; i < free; ++i) {
-        const WireLink& link = links[i];
-        const Vec3 t = q[i] * Vec3::UnitZ();
-        const Mat3 inertia =
-            link.inertia_across * Mat3::Identity() + (link.inertia_along - link.inertia_across) * t * t.transpose();
-        Mat6& d = system.diagonal[i];
-        d.topLeftCorner<3, 3>().diagonal().array() += link.mass * (inertial + drag);
-        d.bottomRightCorner<3, 3>() += (inertial + spin_drag) * inertia;
-        system.right[i].head<3>() +=
-            link.mass * (inertial * (x_predicted[i] - x[i]) + drag * (x_start[i] - x[i])) + force[i];
-        system.right[i].tail<3>() -=
-            inertia * (inertial * turn(q_predicted[i], q[i]) + spin_drag * turn(q_start[i], q[i]));
-    }
-    for (std::size_t i = 0; i < free; ++i) assemble_joint(i, free);
+    joints.resize(free);
+    axis.resize(free);
+    workers.for_ranges(free, link_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            axis[i] = q[i] * Vec3::UnitZ();
+            joints[i] = joint_now(x[i], q[i], links[i].length, x[i + 1], q[i + 1], links[i + 1].length, world.joint(i));
+        }
+    });
+    workers.for_ranges(free, link_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) assemble_link(i, h);
+    });
 }
 
 // A link that would travel further than max_travel_mm is braked by a viscous force of its own, so that contact, which
 // looks ahead by that much, is never jumped over when a stored bend is let go.  One that would swing by more than
 // max_turn_rad is braked likewise: a joint's linear law holds for small turns, and a shaped tip that snaps round in one
 // step would tear its joints open.  The brakes only take energy.
-std::size_t Rod::Impl::update_brakes(double h) {
-    const std::size_t free = free_count();
-    std::size_t first = free;
-    for (std::size_t i = 0; i < free; ++i) {
-        const double travel = (x[i] + system.solution[i].head<3>() - x_start[i]).norm();
-        const Vec3 turned = system.solution[i].tail<3>();
-        const double swing = (turned - axis[i] * axis[i].dot(turned)).norm();
-        if (travel <= brake_tolerance * max_travel_mm() && swing <= most_swing_rad) continue;
-        if (travel > brake_tolerance * max_travel_mm()) {
-            const double needed = links[i].mass / (h * h) * (travel / max_travel_mm() - 1.0);
-            brake[i] = std::max(3.0 * brake[i], needed);
-        }
-        if (swing > most_swing_rad) {
-            const double stiffness = links[i].inertia_across / (h * h) + first_guess * world.joint(i).bend;
-            swing_brake[i] = std::max(3.0 * swing_brake[i], stiffness * (swing / linear_swing_rad - 1.0));
-        }
-        if (first == free) first = i;
+bool Rod::Impl::update_brakes(std::size_t i, double h) {
+    const double travel = (x[i] + system.solution[i].head<3>() - x_start[i]).norm();
+    const Vec3 turned = system.solution[i].tail<3>();
+    const double swing = (turned - axis[i] * axis[i].dot(turned)).norm();
+    if (travel <= brake_tolerance * max_travel_mm() && swing <= most_swing_rad) return false;
+    if (travel > brake_tolerance * max_travel_mm()) {
+        const double needed = links[i].mass / (h * h) * (travel / max_travel_mm() - 1.0);
+        brake[i] = std::max(3.0 * brake[i], needed);
     }
-    return first;
+    if (swing > most_swing_rad) {
+        const double stiffness = links[i].inertia_across / (h * h) + first_guess * world.joint(i).bend;
+        swing_brake[i] = std::max(3.0 * swing_brake[i], stiffness * (swing / linear_swing_rad - 1.0));
+    }
+    return true;
 }
 
 // Moves the links and keeps the joints' forces as the linear system had them: after the move the stiff springs' own
 // lengths would show the second order of the rotations instead.
-void Rod::Impl::apply_solution(double h) {
+void Rod::Impl::apply_solution(double h, const Workers& workers) {
     const std::size_t free = free_count();
-    for (std::size_t i = 0; i < free; ++i) {
-        const JointStiffness& s = world.joint(i);
-        const std::size_t b = i + 1;
-        const JointNow j = joint_now(x[i], q[i], links[i].length, x[b], q[b], links[b].length, s);
-        const Vec6& da = system.solution[i];
-        const Vec6 db = b < free ? system.solution[b] : Vec6::Zero().eval();
-        const Vec3 gap = j.gap + db.head<3>() + db.tail<3>().cross(j.rb) - da.head<3>() - da.tail<3>().cross(j.ra);
-        const Vec3 pull = s.axial * gap;  // on a
-        tension[i] = -pull.dot(j.ta + j.tb) * 0.5;
-        if (b < free) continue;
-        const Vec3 turned = da.tail<3>();
-        const Vec3 moment = j.moment - s.bend * (turned - j.u * j.u.dot(turned)) - s.twist * j.g * j.g.dot(turned);
-        sheath_reaction = pull;
-        sheath_torque = moment.dot(sheath.mouth.orientation * Vec3::UnitZ());
-    }
     drag = rows.side_force(system.solution);
-    for (std::size_t i = 0; i < free; ++i) {
-        x[i] += system.solution[i].head<3>();
+    workers.for_ranges(free, link_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const JointStiffness& s = world.joint(i);
+            const std::size_t b = i + 1;
+            const JointNow& j = joints[i];
+            const Vec6& da = system.solution[i];
+            const Vec6 db = b < free ? system.solution[b] : Vec6::Zero().eval();
+            const Vec3 gap = j.gap + db.head<3>() + db.tail<3>().cross(j.rb) - da.head<3>() - da.tail<3>().cross(j.ra);
+            const Vec3 pull = s.axial * gap;  // on a
+            tension[i] = -pull.dot(j.ta + j.tb) * 0.5;
+            x[i] += da.head<3>();
+            q[i] = det::rotation_from_vector(da.tail<3>()) * q[i];
+            q[i].normalize();
+            if (b < free) continue;
+            const Vec3 turned = da.tail<3>();
+            const Vec3 moment = j.moment - s.bend * (turned - j.u * j.u.dot(turned)) - s.twist * j.g * j.g.dot(turned);
+            sheath_reaction = pull;
+            sheath_torque = moment.dot(sheath.mouth.orientation * Vec3::UnitZ());
+        }
+    });
+    for (std::size_t i = 0; i < free; ++i)
         drag -= (links[i].mass * spec.damping_per_s / h + brake[i]) * (x[i] - x_start[i]);
-        q[i] = det::rotation_from_vector(system.solution[i].tail<3>()) * q[i];
-        q[i].normalize();
-    }
 }
 
-void Rod::Impl::newton_step(double h, std::span<ChainRow> chain_rows) {
-    Impl& m = *this;
-    const std::size_t free = m.free_count();
-    m.assemble(h);
-    m.axis.resize(free);
-    for (std::size_t i = 0; i < free; ++i) m.axis[i] = m.q[i] * Vec3::UnitZ();
-    m.rows.begin(chain_rows, m.axis, h);
-    m.diagonal = m.system.diagonal;
-    m.right = m.system.right;
-    m.brake.assign(free, 0.0);
-    m.swing_brake.assign(free, 0.0);
-    std::size_t first = 0;
-    for (int pass = 0; first < free || pass == 0; ++pass) {
-        for (std::size_t i = first; i < free; ++i) {
-            m.system.diagonal[i] = m.diagonal[i];
-            m.system.right[i] = m.right[i];
-            m.rows.add_to(i, m.system.diagonal[i], m.system.right[i]);
-            if (m.brake[i] > 0.0) {
-                m.system.diagonal[i].topLeftCorner<3, 3>().diagonal().array() += m.brake[i];
-                m.system.right[i].head<3>() += m.brake[i] * (m.x_start[i] - m.x[i]);
-            }
-            if (m.swing_brake[i] > 0.0) {
-                m.system.diagonal[i].bottomRightCorner<3, 3>().diagonal().array() += m.swing_brake[i];
-            }
-        }
-        m.system.factor_and_solve(first);
-        first = m.rows.update(m.system.solution, pass);
-        if (pass < braking_passes) first = std::min(first, m.update_brakes(h));
+// The block of link i with its rows and brakes.
+void Rod::Impl::add_rows_and_brakes(std::size_t i) {
+    system.diagonal[i] = diagonal[i];
+    system.right[i] = right[i];
+    rows.add_to(i, system.diagonal[i], system.right[i]);
+    if (brake[i] > 0.0) {
+        system.diagonal[i].topLeftCorner<3, 3>().diagonal().array() += brake[i];
+        system.right[i].head<3>() += brake[i] * (x_start[i] - x[i]);
     }
-    m.rows.end(chain_rows);
-    m.apply_solution(h);
+    if (swing_brake[i] > 0.0) system.diagonal[i].bottomRightCorner<3, 3>().diagonal().array() += swing_brake[i];
+}
+
+void Rod::Impl::newton_step(double h, std::span<ChainRow> chain_rows, const Workers& workers) {
+    const std::size_t free = free_count();
+    assemble(h, workers);
+    rows.begin(chain_rows, axis, h);
+    diagonal = system.diagonal;
+    right = system.right;
+    brake.assign(free, 0.0);
+    swing_brake.assign(free, 0.0);
+    to_build.resize(free);
+    BlockRange changed{0, free};
+    for (int pass = 0; !changed.empty() || pass == 0; ++pass) {
+        system.factor_and_solve(
+            changed, workers, [&](std::size_t i) { add_rows_and_brakes(i); },
+            [&](std::size_t i) {
+                bool anew = rows.update(i, system.solution[i], pass);
+                if (pass < braking_passes && update_brakes(i, h)) anew = true;
+                to_build[i] = anew ? 1 : 0;
+            });
+        rows.update_held(pass);
+        const auto first = std::find(to_build.begin(), to_build.end(), 1);
+        const auto last = std::find(to_build.rbegin(), to_build.rend(), 1);
+        changed = {static_cast<std::size_t>(first - to_build.begin()),
+                   static_cast<std::size_t>(to_build.rend() - last)};
+    }
+    rows.end(chain_rows);
+    apply_solution(h, workers);
 }
 
 // Rows after a Newton step, as their owner would measure them: the point has moved with its link, the partner has given
@@ -229,14 +238,14 @@ void Rod::Impl::carry_on(std::span<ChainRow> now, std::span<const ChainRow> befo
     }
 }
 
-void Rod::solve(double h, std::span<ChainRow> chain_rows) {
+void Rod::solve(double h, std::span<ChainRow> chain_rows, const Workers& workers) {
     Impl& m = *impl_;
     for (const ChainRow& row : chain_rows)
         CATHLAB_CHECK(row.link >= 0 && static_cast<std::size_t>(row.link) < m.count(), "a chain row names no link");
     std::vector<ChainRow> now(chain_rows.begin(), chain_rows.end()), before;
     for (int step = 0; step < newton_steps; ++step) {
         before = now;
-        m.newton_step(h, now);
+        m.newton_step(h, now, workers);
         double swing = 0.0;
         for (std::size_t i = 0; i < m.system.size(); ++i) {
             const Vec3& turned = m.system.solution[i].tail<3>();

@@ -11,6 +11,8 @@
 namespace cathlab {
 namespace {
 
+constexpr std::size_t link_grain = 32;  // links that are worth a thread of their own
+
 bool finite(const Vec3& v) {
     return std::isfinite(v.squaredNorm());
 }
@@ -133,37 +135,41 @@ double Rod::command(double advance_mm, double rotate_rad) {
     return m.insertion - before;
 }
 
-void Rod::predict(double h, std::span<const Vec3> link_force) {
+void Rod::predict(double h, std::span<const Vec3> link_force, const Workers& workers) {
     CATHLAB_CHECK(h > 0.0 && std::isfinite(h), "a substep must be longer than zero");
     Impl& m = *impl_;
     CATHLAB_CHECK(link_force.size() <= m.count(), "more forces than links");
     const std::size_t free = m.free_count();
-    for (std::size_t i = 0; i < m.count(); ++i) {
-        const BodyMotion motion = m.world.motion(i);
-        m.x_start[i] = motion.pose.position;
-        m.q_start[i] = motion.pose.orientation;
-        m.force[i] = i < link_force.size() ? link_force[i] : Vec3(Vec3::Zero());
-        CATHLAB_CHECK(finite(m.force[i]), "a force on a link is not finite");
-        if (i < free) {
-            m.x[i] = m.x_start[i] + shortened(h * motion.velocity, max_travel_mm());
-            m.q[i] = det::rotation_from_vector(shortened(h * motion.spin, max_turn_rad)) * m.q_start[i];
-            m.q[i].normalize();
-        } else {
-            const Pose held = m.held_pose(i, m.insertion, m.rotation);
-            m.x[i] = held.position;
-            m.q[i] = held.orientation;
+    workers.for_ranges(m.count(), link_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const BodyMotion motion = m.world.motion(i);
+            m.x_start[i] = motion.pose.position;
+            m.q_start[i] = motion.pose.orientation;
+            m.force[i] = i < link_force.size() ? link_force[i] : Vec3(Vec3::Zero());
+            CATHLAB_CHECK(finite(m.force[i]), "a force on a link is not finite");
+            if (i < free) {
+                m.x[i] = m.x_start[i] + shortened(h * motion.velocity, max_travel_mm());
+                m.q[i] = det::rotation_from_vector(shortened(h * motion.spin, max_turn_rad)) * m.q_start[i];
+                m.q[i].normalize();
+            } else {
+                const Pose held = m.held_pose(i, m.insertion, m.rotation);
+                m.x[i] = held.position;
+                m.q[i] = held.orientation;
+            }
+            m.x_predicted[i] = m.x[i];
+            m.q_predicted[i] = m.q[i];
         }
-        m.x_predicted[i] = m.x[i];
-        m.q_predicted[i] = m.q[i];
-    }
+    });
 }
 
-void Rod::finish(double h) {
+void Rod::finish(double h, const Workers& workers) {
     Impl& m = *impl_;
-    for (std::size_t i = 0; i < m.count(); ++i) {
-        const Vec3 turn = det::vector_from_rotation(m.q[i] * m.q_start[i].conjugate());
-        m.world.set_motion(i, {{m.x[i], m.q[i]}, (m.x[i] - m.x_start[i]) / h, turn / h});
-    }
+    workers.for_ranges(m.count(), link_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3 turn = det::vector_from_rotation(m.q[i] * m.q_start[i].conjugate());
+            m.world.set_motion(i, {{m.x[i], m.q[i]}, (m.x[i] - m.x_start[i]) / h, turn / h});
+        }
+    });
     if (m.sleeve) m.measure_rubbing(h);
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/archive.h"
+#include "core/parallel.h"
 #include "core/types.h"
 #include "rod/chain_row.h"
 #include "rod/sleeve_spec.h"
@@ -61,18 +62,18 @@ public:
     /// Starts a substep of h seconds: x~ = x + h v, q~ = exp(h w) q for every free link, the travel of a link limited
     /// to max_travel_mm() and its turn to 0.5 rad by scaling its velocity.  link_force: external force on the centre of
     /// each link [mN], at most link_count() entries, tip first; it acts in solve() and not in the prediction.
-    void predict(double h, std::span<const Vec3> link_force = {});
+    void predict(double h, std::span<const Vec3> link_force = {}, const Workers& workers = Workers());
 
     /// One Newton step of implicit Euler for the whole chain, from the current (inside the iteration) poses:
     ///   (M / h^2 + M d / h + sum J^T K J + rows) (dx, dtheta) = right-hand side,
-    /// block tridiagonal in 6 unknowns a link, solved by block Cholesky in O(n).  Rows on links that the sheath holds
-    /// see a link that does not give way.  On return each row's multiplier and tangent_force are the forces that this
-    /// very system contained, so that momentum is exact however far the iteration has come. Throws std::logic_error for
-    /// a row that is not finite, names no link, or has compliance <= 0.
-    void solve(double h, std::span<ChainRow> rows);
+    /// block tridiagonal in 6 unknowns a link, solved by block Cholesky in O(n), the same bits on any threads.  Rows on
+    /// links that the sheath holds see a link that does not give way.  On return each row's multiplier and
+    /// tangent_force are the forces that this very system contained, so that momentum is exact however far the
+    /// iteration has come. Throws std::logic_error for a row that is not finite, names no link, or has compliance <= 0.
+    void solve(double h, std::span<ChainRow> rows, const Workers& workers = Workers());
 
     /// Ends the substep: velocities = motion / h; the Bullet bodies take poses and velocities.
-    void finish(double h);
+    void finish(double h, const Workers& workers = Workers());
 
     /// Links in the chain now, those in the sheath included, and how many of them are free (links 0 .. free - 1).
     std::size_t link_count() const;

@@ -24,6 +24,14 @@ struct SleeveState {
     double rubbing_mn = 0.0;  // on the wire's grip, inward positive: what it needs to slide
 };
 
+/// A joint between link a (nearer to the tip) and b behind it, as it is now (chain_solve.cpp).
+struct JointNow {
+    Vec3 ta, tb, ra, rb, gap;
+    Vec3 u, g;
+    double twist = 0.0;  // c
+    Vec3 moment;         // of bend and twist, on a
+};
+
 struct Rod::Impl {
     WireSpec spec;
     SheathPose sheath;
@@ -47,8 +55,10 @@ struct Rod::Impl {
 
     BlockChain system;
     ChainRows rows;
-    std::vector<Vec3> axis;      // of the free links
-    std::vector<Mat6> diagonal;  // the blocks before rows and brakes
+    std::vector<JointNow> joints;        // in a Newton step: those behind the free links, before it moves them
+    std::vector<std::uint8_t> to_build;  // 1 = the block must be built anew
+    std::vector<Vec3> axis;              // of the free links
+    std::vector<Mat6> diagonal;          // the blocks before rows and brakes
     std::vector<Vec6> right;
     std::vector<double> brake;        // mN/mm against a link's travel, see update_brakes
     std::vector<double> swing_brake;  // mN mm per rad against its swing in a Newton step
@@ -64,11 +74,12 @@ struct Rod::Impl {
     /// Lays what is free along a path, at rest.
     void lay(std::span<const Vec3> path);
     void update_joints();
-    void assemble(double h);
-    void assemble_joint(std::size_t i, std::size_t free);
-    std::size_t update_brakes(double h);
-    void apply_solution(double h);
-    void newton_step(double h, std::span<ChainRow> rows);
+    void assemble(double h, const Workers& workers);
+    void assemble_link(std::size_t i, double h);
+    void add_rows_and_brakes(std::size_t i);
+    bool update_brakes(std::size_t i, double h);
+    void apply_solution(double h, const Workers& workers);
+    void newton_step(double h, std::span<ChainRow> rows, const Workers& workers);
     void carry_on(std::span<ChainRow> now, std::span<const ChainRow> before) const;
 
     // With a catheter (rod_sleeve.cpp).

@@ -23,6 +23,9 @@ constexpr int walls_of_a_tip = 4;
 // sample is left out where none of its neighbours within so much came near the wall in the last substep.
 constexpr double full_front_mm = 60.0;
 constexpr double neighbours_mm = 3.0;
+// Links, and samples, that are worth a thread of their own.
+constexpr std::size_t link_grain = 48;
+constexpr std::size_t sample_grain = 128;
 
 // Where along a device the last substep found the wall near.
 class AtTheWall {
@@ -155,23 +158,26 @@ void begin_samples(const Parts& p, const CatheterShape& catheter_before, DeviceS
 void refresh_samples(const Parts& p, DeviceSamples& samples) {
     if (!p.wire) return;
     const Rod& wire = *p.wire;
-    std::vector<Pose> pose(wire.link_count());
-    std::vector<Quat> turn(wire.link_count());
-    std::vector<Vec3> rotation(wire.link_count());
-    for (std::size_t i = 0; i < pose.size(); ++i) {
-        pose[i] = wire.link_pose(i);
-        turn[i] = pose[i].orientation * samples.link_before[i].conjugate();
-        rotation[i] = det::vector_from_rotation(turn[i]);
-    }
+    const Workers& workers = p.world->workers();
+    samples.link_turn.resize(wire.link_count());
+    samples.link_rotation.resize(wire.link_count());
+    workers.for_ranges(wire.link_count(), link_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            samples.link_turn[i] = wire.link_pose(i).orientation * samples.link_before[i].conjugate();
+            samples.link_rotation[i] = det::vector_from_rotation(samples.link_turn[i]);
+        }
+    });
     // The list keeps the sample's place in the link's own frame: arm_now = turn * arm_before.
-    for (std::size_t k = 0; k < samples.wire_free.size(); ++k) {
-        const RodSample& s = samples.wire[samples.wire_free[k]];
-        const auto link = static_cast<std::size_t>(s.link);
-        DeviceSample& d = samples.list[k];
-        d.arm = turn[link] * s.arm;
-        d.position = pose[link].position + d.arm;
-        d.rotation = rotation[link];
-    }
+    workers.for_ranges(samples.wire_free.size(), sample_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const RodSample& s = samples.wire[samples.wire_free[k]];
+            const auto link = static_cast<std::size_t>(s.link);
+            DeviceSample& d = samples.list[k];
+            d.arm = samples.link_turn[link] * s.arm;
+            d.position = wire.link_pose(link).position + d.arm;
+            d.rotation = samples.link_rotation[link];
+        }
+    });
 }
 
 }  // namespace cathlab

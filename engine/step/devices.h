@@ -15,6 +15,8 @@ struct DeviceSamples {
     std::vector<double> wire_arc;        ///< of each, mm from the wire's tip
     std::vector<std::size_t> wire_free;  ///< which of them lie outside the catheter: these meet the wall
     std::vector<Quat> link_before;       ///< orientation of every link when the substep began
+    std::vector<Quat> link_turn;         ///< of every link since then,
+    std::vector<Vec3> link_rotation;     ///< and its rotation vector, rad: both from refresh_samples
     std::vector<Vec3> catheter_before;   ///< where the points of the catheter's line now lay when the substep began, mm
     std::vector<DeviceSample> list;      ///< first the wire's free ones, then the catheter's, tip first
 };
@@ -34,7 +36,7 @@ double drive_slip(const Rod& wire, double h);
 /// Lists the samples as they are before the prediction (position = previous).
 void begin_samples(const Parts& parts, const CatheterShape& catheter_before, DeviceSamples& samples);
 
-/// Brings positions, arms and rotations of the wire's samples to where the chain is now.
+/// Brings positions, arms and rotations of the wire's samples to where the chain is now: after whatever moves it.
 void refresh_samples(const Parts& parts, DeviceSamples& samples);
 
 }  // namespace cathlab

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "contact/push_out.h"
-#include "core/deterministic_math.h"
 #include "core/units.h"
 #include "step/catheter_drive.h"
 #include "step/devices.h"
@@ -100,11 +99,10 @@ void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<Ch
         std::vector<double> from_mouth;
         const double insertion = p.wire->insertion_mm();
         for (std::size_t i = 0; i < now.size(); ++i) {
-            const Pose pose = p.wire->link_pose(static_cast<std::size_t>(now[i].link));
-            const Quat turn = pose.orientation * samples.link_before[static_cast<std::size_t>(now[i].link)].conjugate();
-            now[i].arm = turn * now[i].arm;
-            now[i].position = pose.position + now[i].arm;
-            motion[i] = {now[i].position - samples.wire[i].position, det::vector_from_rotation(turn)};
+            const auto link = static_cast<std::size_t>(now[i].link);
+            now[i].arm = samples.link_turn[link] * now[i].arm;
+            now[i].position = p.wire->link_pose(link).position + now[i].arm;
+            motion[i] = {now[i].position - samples.wire[i].position, samples.link_rotation[link]};
             from_mouth.push_back(insertion - samples.wire_arc[i]);
         }
         const CatheterBore bore = catheter_bore(p);
@@ -126,7 +124,7 @@ void solve_wire(Parts& p, const DeviceSamples& samples, double h, std::vector<Ch
         bore_rows = std::move(fresh);
         rows.insert(rows.end(), bore_rows.begin(), bore_rows.end());
     }
-    p.wire->solve(h, rows);
+    p.wire->solve(h, rows, p.world->workers());
     std::copy(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(wall_rows.size()), wall_rows.begin());
 }
 
@@ -142,9 +140,8 @@ TrueDepth pressed_depth(Parts& p, const DeviceSamples& samples, StepSums& sums) 
 
 // Rows for the samples where they are now, against the wall at `particles`.  The surface follows as a whole once a
 // step, and then where devices are.
-void find_contacts(Parts& p, DeviceSamples& samples, std::span<const Vec3> particles, StepSums& sums,
+void find_contacts(Parts& p, const DeviceSamples& samples, std::span<const Vec3> particles, StepSums& sums,
                    bool again = false) {
-    refresh_samples(p, samples);
     const Workers& workers = p.world->workers();
     if (sums.surface_near) {
         update(*p.surface, particles, *sums.surface_near, *p.surface_state, workers);
@@ -254,7 +251,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
     if (p.wire) command_wire(p, input, h, sums);
     DeviceSamples samples;
     begin_samples(p, catheter_before.shape, samples);
-    if (p.wire) p.wire->predict(h, wire_weight(*p.wire, p.settings->gravity_mm_s2));
+    if (p.wire) p.wire->predict(h, wire_weight(*p.wire, p.settings->gravity_mm_s2), workers);
 
     p.stage("effects");
     WallForces extra(p, context);
@@ -264,6 +261,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
     // 2. Contacts, against the wall where it was when the substep began: the prediction is inertia alone, and a wall
     // that leans on a device would be looked for where the device is not.
     p.stage("contact");
+    refresh_samples(p, samples);
     find_contacts(p, samples, scratch.start, sums);
     p.stage("heart");
     extra.detect_heart(p, drive, h);
@@ -290,7 +288,6 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
         }
 
         p.stage("contact");
-        refresh_samples(p, samples);
         p.contacts->refresh(samples.list, state.x, workers);
         for (int k = 0; p.wire && k < wire_solves && (k == 0 || p.contacts->deepest(wire_device) > wire_depth_mm);
              ++k) {
@@ -325,7 +322,6 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
 
         // Where wall and device slid past each other, the rows speak of another place: look again, and once more.
         p.stage("contact");
-        refresh_samples(p, samples);
         p.contacts->refresh(samples.list, state.x, workers);
         if (pass + 1 < passes) continue;
         deepest = pressed_depth(p, samples, sums);
@@ -359,7 +355,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
     }
     p.stage("rod");
     if (p.wire) {
-        p.wire->finish(h);
+        p.wire->finish(h, workers);
         sums.wire_sheath_mn += p.wire->sheath_force_mn();
     }
     p.stage("contact");
