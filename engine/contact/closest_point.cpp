@@ -42,10 +42,10 @@ struct Nearest {
 };
 
 template <class Visit, class Bound>
-void visit_triangles(const LumenSurfaceModel& model, const LumenSurfaceState& state, const NearLeaves* near,
+void visit_triangles(const LumenSurfaceModel& model, const LumenSurfaceState& state, const NearTriangles* near,
                      const Vec3& p, const Bound& bound, const Visit& visit) {
     if (near)
-        for_near_triangles(model.tree, state.boxes, *near, p, bound, visit);
+        for_near_triangles(*near, bound, visit);
     else
         for_near_triangles(model.tree, state.boxes, p, bound, visit);
 }
@@ -121,7 +121,7 @@ Nearest closest_of_patch(const LumenSurfaceModel& model, const LumenSurfaceState
 }  // namespace
 
 SurfacePoint closest(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p, double max_distance,
-                     Index hint, const NearLeaves* near) {
+                     Index hint, const NearTriangles* near) {
     CATHLAB_CHECK(p.allFinite(), "a device point must be finite");
     CATHLAB_CHECK(hint < static_cast<Index>(model.triangles.size()), "hint is no triangle of this surface");
     Nearest best;
@@ -197,7 +197,7 @@ std::optional<SurfacePoint> first_exit(const LumenSurfaceModel& model, const Lum
 
 std::vector<SurfacePoint> further_walls(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p,
                                         double reach, const SurfacePoint& nearest, const Vec3& nearest_normal,
-                                        int at_most, const NearLeaves* near) {
+                                        int at_most, const NearTriangles* near) {
     std::vector<SurfacePoint> candidates;
     if (at_most <= 0 || !nearest.found()) return candidates;
     const double reach2 = reach * reach;
@@ -213,11 +213,12 @@ std::vector<SurfacePoint> further_walls(const LumenSurfaceModel& model, const Lu
             if (along > 0.0 && along * along > other_wall_cosine * other_wall_cosine * facing.squaredNorm()) return;
             const TrianglePoint foot = on_triangle(model, state, p, t);
             if (foot.squared_distance > reach2) return;
+            const Vec3 across = foot.point - nearest.point;
+            if (across.dot(nearest_normal) <= 0.0) return;
             SurfacePoint wall;
             wall.inward_normal = inward_smooth_normal(model, state, t, foot.barycentric);
-            if (wall.inward_normal.dot(nearest_normal) > other_wall_cosine) return;
-            const Vec3 across = foot.point - nearest.point;
-            if (across.dot(nearest_normal) <= 0.0 || across.dot(wall.inward_normal) >= 0.0) return;
+            if (wall.inward_normal.dot(nearest_normal) > other_wall_cosine || across.dot(wall.inward_normal) >= 0.0)
+                return;
             wall.triangle = t;
             wall.barycentric = foot.barycentric;
             wall.point = foot.point;

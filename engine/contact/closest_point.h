@@ -30,11 +30,11 @@ struct SurfacePoint {
 /// of a neighbouring vessel, however near, is not its own: the answer is L.  If p is inside by L, it only crossed the
 /// lumen: the answer is G. A hint further than 6 mm from p says nothing.
 ///
-/// near: where given, holds every leaf within max_distance of p, and the tree is not walked again.
+/// near: where given, gathered about p within max_distance at least; the tree is not walked again.
 ///
 /// p must be finite (std::logic_error).
 SurfacePoint closest(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p, double max_distance,
-                     Index hint = -1, const NearLeaves* near = nullptr);
+                     Index hint = -1, const NearTriangles* near = nullptr);
 
 /// The place where the segment from a to b first leaves the lumen (crosses a triangle against its inward normal), if
 /// any. signed_distance is that of b to the plane of the triangle.
@@ -50,6 +50,6 @@ std::optional<SurfacePoint> first_exit(const LumenSurfaceModel& model, const Lum
 /// solve and not one substep late.  A wall beyond a ridge, and a neighbouring vessel's, do not qualify.
 std::vector<SurfacePoint> further_walls(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p,
                                         double reach, const SurfacePoint& nearest, const Vec3& nearest_normal,
-                                        int at_most, const NearLeaves* near = nullptr);
+                                        int at_most, const NearTriangles* near = nullptr);
 
 }  // namespace cathlab

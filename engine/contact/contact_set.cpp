@@ -119,7 +119,7 @@ ContactSet::ContactSet(const ContactSettings& settings) : settings_(settings) {
 
 ContactSet::Found ContactSet::look(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
                                    const DeviceSample& sample, Index hint, bool known_inside, double margin,
-                                   const NearLeaves& near) const {
+                                   const NearTriangles& near) const {
     Found found;
     const Vec3 motion = sample.position - sample.previous;
     const double moved = motion.norm();
@@ -213,12 +213,13 @@ void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState&
     std::vector<Found> found(n);
     const auto triangles = static_cast<Index>(model.triangles.size());
     workers.for_ranges(n, 4 * samples_together, [&](std::size_t begin, std::size_t end) {
-        NearLeaves near;
-        std::size_t together = begin;  // `near` serves the samples before this one
+        NearLeaves leaves;
+        NearTriangles near;
+        std::size_t together = begin;  // `leaves` serve the samples before this one
         for (std::size_t i = begin; i < end; ++i) {
             const DeviceSample& s = samples[at(memory_.place[i])];
             if (i == together) {
-                together = gather_leaves(model, surface, samples, memory_.place, i, end, margin, near);
+                together = gather_leaves(model, surface, samples, memory_.place, i, end, margin, leaves);
             }
             Index hint = s.hint;
             bool known_inside = false;
@@ -227,6 +228,7 @@ void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState&
                 if (hint < 0) hint = old_memory.triangle[place];
                 known_inside = old_memory.outside[place] == 0;
             }
+            near.gather(model.tree, surface.boxes, leaves, s.position, s.radius + margin);
             found[i] = look(model, surface, s, hint < triangles ? hint : -1, known_inside, margin, near);
         }
     });

@@ -180,7 +180,7 @@ private:
     struct Found;
 
     Found look(const LumenSurfaceModel& model, const LumenSurfaceState& surface, const DeviceSample& sample, Index hint,
-               bool known_inside, double margin, const NearLeaves& near) const;
+               bool known_inside, double margin, const NearTriangles& near) const;
     /// Row r: sample `s` (at `place` in its span) against the k-th of the walls that it found.
     void make_row(const LumenSurfaceModel& model, const DeviceSample& s, const Found& found, int k, Index place,
                   std::span<const Vec3> particles_before, std::size_t r);

@@ -8,6 +8,7 @@ namespace {
 
 constexpr Index leaf_size = 4;
 constexpr std::size_t leaf_grain = 256;
+constexpr std::size_t node_grain = 512;
 constexpr double ball_mm = 5.0;  // places that are asked for at once
 
 Vec3 centroid(const Triangle& t, std::span<const Vec3> vertices) {
@@ -27,9 +28,11 @@ SurfaceTree build_surface_tree(std::span<const Triangle> triangles, std::span<co
     tree.order.resize(triangles.size());
     std::iota(tree.order.begin(), tree.order.end(), 0);
     tree.nodes.push_back({0, count});
+    tree.level.push_back(0);
     // Nodes wait in `nodes` as leaves with all their triangles; each is split when its turn comes, so children follow
     // parents.
     for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+        if (n == tree.level.back()) tree.level.push_back(tree.nodes.size());
         const SurfaceTree::Node node = tree.nodes[n];
         if (node.count <= leaf_size) {
             tree.leaves.push_back(static_cast<Index>(n));
@@ -115,8 +118,13 @@ void refit(const SurfaceTree& tree, std::span<const Triangle> triangles, std::sp
     workers.for_ranges(tree.leaves.size(), leaf_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t l = begin; l < end; ++l) fit_leaf(tree, l, triangles, vertices, boxes);
     });
-    for (std::size_t n = tree.nodes.size(); n-- > 0;)
-        if (tree.nodes[n].count == 0) boxes.node[n] = inner_box(tree, n, boxes.node);
+    for (std::size_t depth = tree.level.size() - 1; depth-- > 0;) {
+        const std::size_t first = tree.level[depth];
+        workers.for_ranges(tree.level[depth + 1] - first, node_grain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t n = first + begin; n < first + end; ++n)
+                if (tree.nodes[n].count == 0) boxes.node[n] = inner_box(tree, n, boxes.node);
+        });
+    }
 }
 
 void refit(const SurfaceTree& tree, const TreePart& part, std::span<const Triangle> triangles,
@@ -183,6 +191,21 @@ void NearLeaves::gather(const SurfaceTree& tree, const TreeBoxes& boxes, const V
         }
         stack[top++] = node.first + 1;
         stack[top++] = node.first;
+    }
+}
+
+void NearTriangles::gather(const SurfaceTree& tree, const TreeBoxes& boxes, const NearLeaves& leaves,
+                           const Vec3& centre, double radius) {
+    entries.clear();
+    const double bound = radius * radius + box_slack_mm2;
+    for (const Index leaf : leaves.nodes) {
+        if (boxes.node[static_cast<std::size_t>(leaf)].squared_distance(centre) > bound) continue;
+        const SurfaceTree::Node& node = tree.nodes[static_cast<std::size_t>(leaf)];
+        const auto first = static_cast<std::size_t>(node.first), end = first + static_cast<std::size_t>(node.count);
+        for (std::size_t i = first; i < end; ++i) {
+            const double distance = boxes.place[i].squared_distance(centre);
+            if (distance <= bound) entries.push_back({distance, tree.order[i]});
+        }
     }
 }
 

@@ -43,6 +43,7 @@ struct SurfaceTree {
     std::vector<Node> nodes;
     std::vector<Index> order;                           ///< triangle indices, leaf after leaf
     std::vector<Index> leaves;                          ///< nodes that are leaves, ascending
+    std::vector<std::size_t> level;                     ///< nodes of depth d are [level[d], level[d + 1])
     std::size_t vertex_count = 0;                       ///< of the whole surface
     std::vector<Index> leaf_vertex_start, leaf_vertex;  ///< vertices of leaf l, each once: [start[l], start[l + 1])
 };
@@ -76,16 +77,17 @@ TreePart part_near(const SurfaceTree& tree, const TreeBoxes& boxes, std::span<co
 void refit(const SurfaceTree& tree, const TreePart& part, std::span<const Triangle> triangles,
            std::span<const Vec3> vertices, TreeBoxes& boxes, const Workers& workers);
 
+/// Above what rounding makes of a box's distance or of a triangle's.
+inline constexpr double box_slack_mm2 = 1e-9;
+
 /// The triangles of a leaf whose own boxes are within sqrt(bound()) of p.  A box is a fifth of the work of an exact
 /// answer, which it spares where a wall is crumpled and a leaf's box holds half of it.
 template <class Visit, class Bound>
 void for_triangles_of(const SurfaceTree& tree, const SurfaceTree::Node& leaf, const TreeBoxes& boxes, const Vec3& p,
                       const Bound& bound, const Visit& visit) {
-    // Above what rounding makes of a box's distance or of a triangle's.
-    constexpr double slack_mm2 = 1e-9;
     const auto first = static_cast<std::size_t>(leaf.first), end = first + static_cast<std::size_t>(leaf.count);
     for (std::size_t i = first; i < end; ++i)
-        if (boxes.place[i].squared_distance(p) <= bound() + slack_mm2) visit(tree.order[i]);
+        if (boxes.place[i].squared_distance(p) <= bound() + box_slack_mm2) visit(tree.order[i]);
 }
 
 /// Calls visit(triangle) for every triangle whose box is within sqrt(bound()) of p, near leaves first; bound() is asked
@@ -125,14 +127,23 @@ struct NearLeaves {
     void gather(const SurfaceTree& tree, const TreeBoxes& boxes, const Vec3& centre, double radius);
 };
 
-/// The same over some leaves, in their order.
+/// The triangles of those leaves whose boxes meet a ball, for one query or several about its centre.
+struct NearTriangles {
+    struct Entry {
+        double squared_distance;  ///< of the centre to the triangle's box, mm2
+        Index triangle;
+    };
+    std::vector<Entry> entries;
+
+    void gather(const SurfaceTree& tree, const TreeBoxes& boxes, const NearLeaves& leaves, const Vec3& centre,
+                double radius);
+};
+
+/// The same over triangles gathered about p, in their order.
 template <class Visit, class Bound>
-void for_near_triangles(const SurfaceTree& tree, const TreeBoxes& boxes, const NearLeaves& leaves, const Vec3& p,
-                        const Bound& bound, const Visit& visit) {
-    for (const Index leaf : leaves.nodes) {
-        if (boxes.node[static_cast<std::size_t>(leaf)].squared_distance(p) > bound()) continue;
-        for_triangles_of(tree, tree.nodes[static_cast<std::size_t>(leaf)], boxes, p, bound, visit);
-    }
+void for_near_triangles(const NearTriangles& near, const Bound& bound, const Visit& visit) {
+    for (const NearTriangles::Entry& entry : near.entries)
+        if (entry.squared_distance <= bound() + box_slack_mm2) visit(entry.triangle);
 }
 
 }  // namespace cathlab

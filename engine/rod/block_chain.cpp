@@ -94,11 +94,17 @@ void BlockChain::factor(std::size_t i, const Factor* ahead, const Factor* behind
 void BlockChain::substitute(std::size_t i, const Vec6* neighbour) {
     const Factor& f = factor_[i];
     double d[6];
-    for (int c = 0; c < 6; ++c) {
-        d[c] = f.y[c] * f.inverse[c];
-        if (neighbour == nullptr) continue;
-        for (int r = 0; r < 6; ++r) d[c] -= f.w[c][r] * (*neighbour)[r];
+    for (int c = 0; c < 6; ++c) d[c] = f.y[c] * f.inverse[c];
+    if (neighbour != nullptr) {
+        const Column x = load(neighbour->data());
+#pragma GCC unroll 6
+        for (int c = 0; c < 6; ++c) {
+            const Column w = load(f.w[c]);
+            const Pair sum = w.p[0] * x.p[0] + w.p[1] * x.p[1] + w.p[2] * x.p[2];
+            d[c] -= sum[0] + sum[1];
+        }
     }
+#pragma GCC unroll 5
     for (int c = 4; c >= 0; --c)
         for (int r = c + 1; r < 6; ++r) d[c] -= f.l[c][r] * d[r];
     std::copy(d, d + 6, solution[i].data());
