@@ -44,4 +44,15 @@ struct WallRow {
                 end = 0;  ///< its particles and weights in ContactSet::particles(), ::weights(): w_j = sum_k b_k w_kj
 };
 
+/// The part of v across a unit normal.
+inline Vec3 tangential(const Vec3& v, const Vec3& normal) {
+    return v - v.dot(normal) * normal;
+}
+
+/// t, or what points the same way and is as long as the limit.
+inline Vec3 into_cone(const Vec3& t, double limit) {
+    const double size = t.norm();
+    return size > limit ? Vec3(t * (limit / size)) : t;
+}
+
 }  // namespace cathlab

@@ -25,8 +25,10 @@ namespace {
 constexpr double brake_tolerance = 1.25;  // of max_travel_mm
 constexpr int braking_passes = 12;
 // A Newton step in which a link swings by more is followed by another one at once: the ends of a link that is turned
-// move along an arc and not along the tangent, which would open its joints.
+// move along an arc and not along the tangent, which opens its joints by a quarter of swing^2 of their length.
 constexpr double linear_swing_rad = 0.15;
+// ... and what is left of that after the last step is taken back.
+constexpr double small_swing_rad = 0.01;
 constexpr double most_swing_rad = 0.2;
 constexpr int newton_steps = 8;
 constexpr double first_guess = 0.1;     // of a joint's stiffness, for the brake of a swing
@@ -120,6 +122,7 @@ void Rod::Impl::assemble(double h, const Workers& workers) {
     const std::size_t free = free_count();
     system.resize(free);
     joints.resize(free);
+    opening.resize(free);
     axis.resize(free);
     workers.for_ranges(free, link_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -167,6 +170,7 @@ void Rod::Impl::apply_solution(double h, const Workers& workers) {
             const Vec3 gap = j.gap + db.head<3>() + db.tail<3>().cross(j.rb) - da.head<3>() - da.tail<3>().cross(j.ra);
             const Vec3 pull = s.axial * gap;  // on a
             tension[i] = -pull.dot(j.ta + j.tb) * 0.5;
+            opening[i] = gap;
             x[i] += da.head<3>();
             q[i] = det::rotation_from_vector(da.tail<3>()) * q[i];
             q[i].normalize();
@@ -179,6 +183,16 @@ void Rod::Impl::apply_solution(double h, const Workers& workers) {
     });
     for (std::size_t i = 0; i < free; ++i)
         drag -= (links[i].mass * spec.damping_per_s / h + brake[i]) * (x[i] - x_start[i]);
+}
+
+// Puts the links, from the sheath on, where their joints are as far open as the linear system had them.
+void Rod::Impl::close_joints() {
+    for (std::size_t i = free_count(); i-- > 0;) {
+        const std::size_t b = i + 1;
+        const Vec3 rear = x[i] - (0.5 * links[i].length) * (q[i] * Vec3::UnitZ());
+        const Vec3 front = x[b] + (0.5 * links[b].length) * (q[b] * Vec3::UnitZ());
+        x[i] += front - rear - opening[i];
+    }
 }
 
 // The block of link i with its rows and brakes.
@@ -243,10 +257,11 @@ void Rod::solve(double h, std::span<ChainRow> chain_rows, const Workers& workers
     for (const ChainRow& row : chain_rows)
         CATHLAB_CHECK(row.link >= 0 && static_cast<std::size_t>(row.link) < m.count(), "a chain row names no link");
     std::vector<ChainRow> now(chain_rows.begin(), chain_rows.end()), before;
+    double swing = 0.0;
     for (int step = 0; step < newton_steps; ++step) {
         before = now;
         m.newton_step(h, now, workers);
-        double swing = 0.0;
+        swing = 0.0;
         for (std::size_t i = 0; i < m.system.size(); ++i) {
             const Vec3& turned = m.system.solution[i].tail<3>();
             swing = std::max(swing, (turned - m.axis[i] * m.axis[i].dot(turned)).squaredNorm());
@@ -254,6 +269,7 @@ void Rod::solve(double h, std::span<ChainRow> chain_rows, const Workers& workers
         if (swing < linear_swing_rad * linear_swing_rad) break;
         m.carry_on(now, before);
     }
+    if (swing > small_swing_rad * small_swing_rad) m.close_joints();
     for (std::size_t r = 0; r < now.size(); ++r) {
         chain_rows[r].multiplier = now[r].multiplier;
         chain_rows[r].tangent_force = now[r].tangent_force;

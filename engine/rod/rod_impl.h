@@ -56,6 +56,7 @@ struct Rod::Impl {
     BlockChain system;
     ChainRows rows;
     std::vector<JointNow> joints;        // in a Newton step: those behind the free links, before it moves them
+    std::vector<Vec3> opening;           // of each, by the linear system
     std::vector<std::uint8_t> to_build;  // 1 = the block must be built anew
     std::vector<Vec3> axis;              // of the free links
     std::vector<Mat6> diagonal;          // the blocks before rows and brakes
@@ -79,6 +80,7 @@ struct Rod::Impl {
     void add_rows_and_brakes(std::size_t i);
     bool update_brakes(std::size_t i, double h);
     void apply_solution(double h, const Workers& workers);
+    void close_joints();
     void newton_step(double h, std::span<ChainRow> rows, const Workers& workers);
     void carry_on(std::span<ChainRow> now, std::span<const ChainRow> before) const;
 

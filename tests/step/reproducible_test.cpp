@@ -17,9 +17,9 @@ struct ExpectedHash {
     std::uint64_t hash;
 };
 constexpr std::array<ExpectedHash, 3> expected_hashes{{
-    {"tube_wire", 0x0a3c9ee739468a98},
+    {"tube_wire", 0x464f5bc39f07cd1c},
     {"tube_catheter", 0x05377a87796f1430},
-    {"fork", 0x332e69b41ae77fa4},
+    {"fork", 0x6002b14a98cf81ed},
 }};
 
 constexpr int steps = 150;
