@@ -1,6 +1,7 @@
 // A recorded run once more from its inputs alone: what it comes to, and what is stored otherwise.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "scene/scene_spec.h"
 #include "task/metrics.h"
 #include "task/task.h"
+#include "world/world.h"
 
 namespace cathlab {
 
@@ -25,11 +27,13 @@ struct ScoredRun {
     std::vector<std::string> differences;  ///< from what is stored; a sentence each
 };
 
-/// Steps the recorded inputs without a picture and compares each file's sum, every channel, the hashes of the state
-/// and each stored metric, bit by bit.  scene: as recorded_scene gives it.  models: null = built here.  progress: the
-/// fraction done, called now and then; may be empty.  Throws UserError where the run cannot be read, its anatomy is
-/// built otherwise now, or a stop was wanted.
+/// Steps the recorded inputs without a picture and compares each file's sum, every channel, the hashes of the state,
+/// the events, the result of the task and each stored metric, bit by bit.  scene: as recorded_scene gives it.  models:
+/// null = built here.  progress: the fraction done, called now and then; each: after every step of this index.  Both
+/// may be empty.  Throws UserError where the run cannot be read, its anatomy is built otherwise now, or a stop was
+/// wanted.
 ScoredRun score_run(const RunRecord& run, const SceneSpec& scene, const SceneModels* models, int threads,
-                    const AppContext& context, const std::function<void(double)>& progress);
+                    const AppContext& context, const std::function<void(double)>& progress,
+                    const std::function<void(std::int64_t, World&)>& each = {});
 
 }  // namespace cathlab

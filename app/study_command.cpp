@@ -1,6 +1,8 @@
 // cathlab study: a user study from its protocol to its report.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -23,6 +25,7 @@
 #include "session.h"
 #include "study/study_report.h"
 #include "study/trial_page.h"
+#include "take_poses.h"
 #include "task/scene_task.h"
 #include "trial_run.h"
 
@@ -48,10 +51,13 @@ void init(const StudyOptions& options, const AppContext& context) {
     protocol.trials = options.trials;
     check_protocol(protocol);
     const auto known = names_in_folder(context.data_root + "/scenes/tasks", ".toml");
-    for (const std::string& task : protocol.tasks)
-        if (!fs::exists(task_scene(task, context)))
-            throw UserError("no task '" + task + "'" + did_you_mean(task, known) + " There is: " + comma_list(known),
-                            true);
+    for (const std::string& task : protocol.tasks) {
+        if (fs::exists(task_scene(task, context))) continue;
+        const std::string near = did_you_mean(task, known);
+        throw UserError(
+            "no task '" + task + "'" + near + (near.empty() ? "; there is: " : " There is: ") + comma_list(known),
+            true);
+    }
     write_study(options.folder, protocol);
     std::printf("%s: %zu groups, %zu tasks, %d trials of each\n", options.folder.c_str(), protocol.groups.size(),
                 protocol.tasks.size(), protocol.trials);
@@ -207,13 +213,14 @@ public:
             const RunRecord record = read_run(options_.folder + "/" + run.folder);
             const SceneSpec scene = recorded_scene(record, context_);
             const auto models = models_of(scene);
-            if (options_.verify) note.verified = verify(record, scene, *models);
-            const std::vector<TrialFrame> frames = frames_of(record, scene);
+            std::vector<TrialFrame> frames = frames_of(record, scene);
+            double device_mm = 1.0;
+            if (options_.verify) note.verified = verify(record, scene, *models, frames, device_mm);
             note.page = "trials/" + run.participant + "-" + run.task + "-" + std::to_string(run.trial) + ".html";
             const std::string verified = note.verified == "yes"  ? "verified: its inputs give the same run"
                                          : note.verified.empty() ? ""
                                                                  : "NOT VERIFIED: " + note.verified;
-            page = trial_page(run, anatomy_of(*models).centreline, frames, verified, "../report.html");
+            page = trial_page(run, anatomy_of(*models).centreline, frames, device_mm, verified, "../report.html");
         } catch (const UserError& error) {
             if (stop_wanted()) throw;
             left_out = std::string("a trial's page: ") + error.what();
@@ -226,6 +233,7 @@ public:
 
 private:
     static constexpr std::size_t steps_a_frame = 5;
+    static constexpr double line_mm = 150.0, line_step_mm = 4.0;  // of a device that a page shows
 
     std::shared_ptr<const SceneModels> models_of(const SceneSpec& scene) {
         const std::scoped_lock lock(mutex_);
@@ -236,14 +244,49 @@ private:
         return models;
     }
 
-    std::string verify(const RunRecord& record, const SceneSpec& scene, const SceneModels& models) const {
-        const ScoredRun scored = score_run(record, scene, &models, 1, context_, {});
+    static bool about_catheter(const SceneSpec& scene) {
+        const auto task = task_of(scene);
+        return task && task->device == "catheter";
+    }
+
+    /// The run that is stepped again shows where the device lay, which no file of a trial does; and how thick it is.
+    static std::vector<Vec3> line_of(World& world, const std::string& device, double& device_mm) {
+        ScenePoses poses;
+        take_poses(world, poses);
+        std::vector<Vec3> out;
+        for (const DevicePose& pose : poses.devices) {
+            if (pose.name != device || pose.points.empty()) continue;
+            if (!pose.radius_mm.empty()) device_mm = 2.0 * pose.radius_mm.front();
+            // A wire's points go from its tip back, a catheter's to its tip.
+            std::vector<Vec3> points = pose.points;
+            if (device == "catheter") std::reverse(points.begin(), points.end());
+            double since = line_step_mm, all = 0.0;
+            for (std::size_t i = 0; i < points.size() && all < line_mm; ++i) {
+                const double d = i == 0 ? 0.0 : std::sqrt((points[i] - points[i - 1]).squaredNorm());
+                since += d;
+                all += d;
+                if (since < line_step_mm) continue;
+                out.push_back(points[i]);
+                since = 0.0;
+            }
+        }
+        return out;
+    }
+
+    std::string verify(const RunRecord& record, const SceneSpec& scene, const SceneModels& models,
+                       std::vector<TrialFrame>& frames, double& device_mm) const {
+        const std::string device = about_catheter(scene) ? "catheter" : "wire";
+        const auto keep = [&](std::int64_t step, World& world) {
+            const auto k = static_cast<std::size_t>(step);
+            if (k % steps_a_frame == 0 && k / steps_a_frame < frames.size())
+                frames[k / steps_a_frame].device = line_of(world, device, device_mm);
+        };
+        const ScoredRun scored = score_run(record, scene, &models, 1, context_, {}, keep);
         return scored.differences.empty() ? "yes" : scored.differences.front();
     }
 
     static std::vector<TrialFrame> frames_of(const RunRecord& record, const SceneSpec& scene) {
-        const auto task = task_of(scene);
-        const bool catheter = task && task->device == "catheter";
+        const bool catheter = about_catheter(scene);
         const std::vector<Channels> trace = read_trace(record.folder, record.manifest.complete);
         std::vector<TrialFrame> frames;
         for (std::size_t k = 0; k < trace.size(); k += steps_a_frame) {
@@ -251,7 +294,11 @@ private:
             frames.push_back({c.time_s,
                               catheter ? Vec3(c.catheter_tip_x_mm, c.catheter_tip_y_mm, c.catheter_tip_z_mm)
                                        : Vec3(c.wire_tip_x_mm, c.wire_tip_y_mm, c.wire_tip_z_mm),
-                              c.force_bar, c.beam_on > 0.5});
+                              c.force_bar,
+                              c.beam_on > 0.5,
+                              c.primary_angle_deg,
+                              c.secondary_angle_deg,
+                              {}});
         }
         return frames;
     }

@@ -48,6 +48,7 @@ std::string TaskWatch::result_json(const OperatorName& who) const {
                                {"force_bar_max", m.force_bar_max},
                                {"fluoroscopy_time_s", m.fluoroscopy_time_s}};
     if (!who.difficulty.empty()) out["difficulty"] = who.difficulty;
+    for (const auto& [name, seconds] : who.aids_s) out["aids"][name] = seconds;
     return out.dump(2) + "\n";
 }
 

@@ -3,6 +3,8 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/channels.h"
 #include "task/force_map.h"
@@ -17,6 +19,8 @@ struct OperatorName {
     std::string kind = "script";  ///< "script", "autopilot", "person"
     std::string skill;            ///< of the autopilot
     std::string difficulty = {};  ///< of a person: how much help there was
+    /// Of a person: views that were looked at, each with the simulated time for which it stood in the window, s.
+    std::vector<std::pair<std::string, double>> aids_s = {};
 };
 
 class TaskWatch {

@@ -131,6 +131,8 @@ void PlayApp::begin_session(std::unique_ptr<Simulation> simulation) {
     screen_ = Screen::play;
     panels_.clear();
     side_ = views_allowed() ? Side::inner : Side::kept;
+    looked_s_ = {};
+    looked_until_s_ = 0.0;
     if (!options_.replay.empty()) {
         if (seek_to_ > 0) sim_->run_to(seek_to_);
         seek_to_ = -1;
@@ -412,6 +414,7 @@ bool PlayApp::frame(double dt) {
     }
     lay_out();
     if (painter_ && !options_.threaded) painter_->paint();
+    note_aids();
     take_pictures();
     if (screen_ == Screen::play && status_.over && options_.replay.empty()) end_session(true);
     if (window_.minimised()) {

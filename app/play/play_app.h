@@ -129,6 +129,7 @@ private:
     void compose();
     void draw_window();
     void note_latency();
+    void note_aids();
     void rest(Clock::time_point begin);
     void next_side();
     void keep_picture();
@@ -178,6 +179,9 @@ private:
     std::vector<Panel> panels_;
     bool quit_ = false, fullscreen_ = false, hands_open_ = false, was_paused_ = false;
     Side side_ = Side::inner;
+    /// For how long each view stood in the window while the session went on, simulated s; by Side.
+    std::array<double, 4> looked_s_{};
+    double looked_until_s_ = 0.0;
     SettingsView settings_view_;
     ResultView result_;
     QuestionsView questions_;

@@ -99,6 +99,15 @@ void PlayApp::next_side() {
     set_side(side);
 }
 
+// Of which views a trial had the help: the inputs do not say.
+void PlayApp::note_aids() {
+    if (!sim_) return;
+    const double now_s = status_.channels.time_s;
+    if (layout_.side.width > 0 && views_allowed() && now_s > looked_until_s_)
+        looked_s_[static_cast<std::size_t>(side_)] += now_s - looked_until_s_;
+    looked_until_s_ = now_s;
+}
+
 // After the window was shown: what was commanded until the state that is in it has been answered.
 void PlayApp::note_latency() {
     if (layout_.side.width == 0 || side_ == Side::kept) stamps_.clear();

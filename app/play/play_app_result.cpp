@@ -32,9 +32,13 @@ void PlayApp::make_result(Simulation& simulation, bool reached) {
         result_.outcome = simulation.goal().outcome == GoalTracker::Outcome::out_of_time ? "The time is over."
                                                                                          : "Ended before the goal.";
     if (!asked_.task.empty() && !result_.folder.empty()) {
+        const auto looked = [&](Side side) { return looked_s_[static_cast<std::size_t>(side)]; };
+        OperatorName who{"person", "", difficulty_name(asked_.difficulty), {}};
+        who.aids_s = {{"inner_view_s", looked(Side::inner)},
+                      {"displacement_view_s", looked(Side::displacement)},
+                      {"force_view_s", looked(Side::force)}};
         if (Recorder* recorder = simulation.recorder())
-            recorder->file("result.json",
-                           simulation.watch().result_json({"person", "", difficulty_name(asked_.difficulty)}));
+            recorder->file("result.json", simulation.watch().result_json(who));
         result_.earlier = earlier_trials(fs::path(result_.folder).parent_path().string(), asked_.task, result_.folder);
     }
 }

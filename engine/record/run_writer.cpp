@@ -31,6 +31,15 @@ std::string exact_number(double value) {
     return {buffer.data(), end};
 }
 
+std::string event_line(const Event& event) {
+    return dump({{"step", event.step},
+                 {"time_s", event.time_s},
+                 {"kind", event.kind},
+                 {"entity", event.entity},
+                 {"message", event.message},
+                 {"value", event.value}});
+}
+
 RunWriter::RunWriter(const std::string& folder, RunManifest manifest, const std::vector<std::string>& entities)
     : folder_(folder),
       manifest_(std::move(manifest)),
@@ -67,13 +76,7 @@ void RunWriter::step(std::int64_t step, const Channels& channels, const std::vec
     std::string row = std::to_string(step);
     for (const ChannelInfo& channel : channel_table()) row += "," + exact_number(channels.*channel.value);
     trace_.add(row);
-    for (const Event& e : events)
-        events_.add(dump({{"step", e.step},
-                          {"time_s", e.time_s},
-                          {"kind", e.kind},
-                          {"entity", e.entity},
-                          {"message", e.message},
-                          {"value", e.value}}));
+    for (const Event& event : events) events_.add(event_line(event));
     if (flushes(step)) flush();
 }
 

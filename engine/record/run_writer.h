@@ -48,6 +48,9 @@ private:
     std::optional<Input> last_input_;
 };
 
+/// What events.jsonl says of an event.
+std::string event_line(const Event& event);
+
 /// The row of a table in which "nan" and "inf" may stand; numbers read back to the same bits.
 std::string exact_number(double value);
 

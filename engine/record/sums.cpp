@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -24,21 +25,27 @@ std::map<std::string, std::string> sums_now(const std::string& folder) {
     return out;
 }
 
+std::string list_of(const std::map<std::string, std::string>& sums) {
+    nlohmann::ordered_json out;
+    for (const auto& [name, sum] : sums) out[name] = sum;
+    return out.dump(2) + "\n";
+}
+
 }  // namespace
 
 void write_sums(const std::string& folder) {
-    nlohmann::ordered_json out;
-    for (const auto& [name, sum] : sums_now(folder)) out[name] = sum;
-    write_whole_file(folder + "/" + file_name, out.dump(2) + "\n");
+    write_whole_file(folder + "/" + file_name, list_of(sums_now(folder)));
 }
 
 std::vector<std::string> check_sums(const std::string& folder) {
     const std::string path = folder + "/" + file_name;
-    std::ifstream in(path);
+    std::ifstream in(path, std::ios::binary);
     if (!in) throw UserError(path + ": cannot be read; a run that was closed has one");
-    const auto json = nlohmann::json::parse(in, nullptr, false);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const auto json = nlohmann::json::parse(text, nullptr, false);
     if (!json.is_object()) throw UserError(path + ": is not a JSON object (edited?)");
     std::map<std::string, std::string> now = sums_now(folder);
+    const std::string as_written = list_of(now);
     std::vector<std::string> out;
     const auto tell = [&](const std::string& name, const char* what) {
         out.push_back(folder + "/");
@@ -53,6 +60,8 @@ std::vector<std::string> check_sums(const std::string& folder) {
         if (found != now.end()) now.erase(found);
     }
     for (const auto& [name, sum] : now) tell(name, " was added since the run was closed");
+    // A blank more or a key that stands twice says the same, and yet somebody wrote it.
+    if (out.empty() && text != as_written) tell(file_name, " was changed since the run was closed");
     return out;
 }
 

@@ -129,9 +129,11 @@ std::vector<Participant> read_participants(const std::string& folder, const Prot
 
 void add_participant(const std::string& folder, const Protocol& protocol, const Participant& participant) {
     check_pseudonym(participant.pseudonym);
-    if (std::find(protocol.groups.begin(), protocol.groups.end(), participant.group) == protocol.groups.end())
-        throw UserError("there is no group '" + participant.group + "'" +
-                        did_you_mean(participant.group, protocol.groups) + " There is: " + comma_list(protocol.groups));
+    if (std::find(protocol.groups.begin(), protocol.groups.end(), participant.group) == protocol.groups.end()) {
+        const std::string near = did_you_mean(participant.group, protocol.groups);
+        throw UserError("there is no group '" + participant.group + "'" + near +
+                        (near.empty() ? "; there is: " : " There is: ") + comma_list(protocol.groups));
+    }
     std::vector<Participant> all = read_participants(folder, protocol);
     for (const Participant& other : all)
         if (lower(other.pseudonym) == lower(participant.pseudonym))

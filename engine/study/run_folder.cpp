@@ -75,6 +75,16 @@ RunEntry read_run_folder(const std::string& root, const std::string& folder) {
     const Json metrics = read_json(metrics_file);
     for (const auto& [name, value] : metrics.items())
         if (value.is_number()) entry.metrics[name] = value.get<double>();
+    const fs::path result_file = path / "result.json";
+    if (!fs::exists(result_file)) return entry;
+    const Json result = read_json(result_file);
+    if (const auto it = result.find("reached"); it != result.end() && it->is_boolean())
+        entry.metrics["goal_reached"] = it->get<bool>() ? 1.0 : 0.0;
+    if (const auto it = result.find("score"); it != result.end() && it->is_number())
+        entry.metrics["score"] = it->get<double>();
+    if (const auto aids = result.find("aids"); aids != result.end() && aids->is_object())
+        for (const auto& [name, value] : aids->items())
+            if (value.is_number()) entry.metrics[name] = value.get<double>();
     return entry;
 }
 

@@ -19,12 +19,14 @@ struct RunEntry {
     std::string scene_hash;
     std::string version;  ///< of the program that recorded it
     bool complete = true;
-    std::map<std::string, double> metrics;  ///< name -> value, names of task's metric table
+    /// Name -> value: task's metric table, and what result.json says, as goal_reached (0 or 1), score (0 to 100) and
+    /// the seconds for which each aid was looked at.
+    std::map<std::string, double> metrics;
 };
 
 /// Reads FOLDER/manifest.json, FOLDER/trial.json where there is one ({"participant", "group", "task", "trial"}: who did
-/// what), and FOLDER/metrics.json (which an incomplete run may lack).  Throws UserError that names the file and what is
-/// wrong with it.
+/// what), FOLDER/metrics.json (which an incomplete run may lack), and FOLDER/result.json where there is one.  Throws
+/// UserError that names the file and what is wrong with it.
 RunEntry read_run_folder(const std::string& root, const std::string& folder);
 
 /// Throws UserError unless the text can be a pseudonym; a name with a blank or an '@' is refused.

@@ -19,8 +19,13 @@ struct Figure {
 // The paper's two first.
 constexpr Figure figures[] = {{"play_time_s", "play time, s"},
                               {"accumulated_collision_n", "accumulated collision, N"},
+                              {"collision_impulse_ns", "collision impulse, N s"},
                               {"force_bar_max", "largest force bar"},
-                              {"fluoroscopy_time_s", "fluoroscopy time, s"}};
+                              {"fluoroscopy_time_s", "fluoroscopy time, s"},
+                              {"score", "score of 100"}};
+// Of result.json, beside the metrics.
+constexpr const char* result_figures[] = {"goal_reached [1]", "score [1]", "inner_view_s [s]",
+                                          "displacement_view_s [s]", "force_view_s [s]"};
 
 std::string number(double value, int digits = 3) {
     return std::isfinite(value) ? plain_number(value, digits) : "-";
@@ -63,6 +68,20 @@ public:
                                         : number(mean(v)) + " ± " + number(standard_deviation(v)) + " (" +
                                               std::to_string(v.size()) + ")");
             row.push_back(p_text(kruskal_wallis(groups).p));
+            out.rows.push_back(row);
+        }
+        return out;
+    }
+
+    PageTable reached() const {
+        PageTable out{"Goal reached, of the trials that count", {"task"}, {}};
+        for (const std::string& group : protocol_.groups) out.header.push_back(group);
+        for (const std::string& task : protocol_.tasks) {
+            std::vector<std::string> row{task};
+            for (const auto& v : by_group(task, "goal_reached"))
+                row.push_back(v.empty() ? "-"
+                                        : std::to_string(std::count(v.begin(), v.end(), 1.0)) + " of " +
+                                              std::to_string(v.size()));
             out.rows.push_back(row);
         }
         return out;
@@ -138,18 +157,23 @@ TrialNote note_of(const std::map<std::string, TrialNote>& notes, const RunEntry&
 }
 
 PageTable trials_table(const std::vector<RunEntry>& runs, const std::map<std::string, TrialNote>& notes) {
-    PageTable out{"Every trial; cathlab play --replay FOLDER shows it as it was seen",
-                  {"folder", "group", "task", "trial", "play time, s", "collision, N", "complete", "verified"},
-                  {}};
+    PageTable out{
+        "Every trial; cathlab play --replay FOLDER shows it as it was seen",
+        {"folder", "group", "task", "trial", "goal", "score", "play time, s", "collision, N", "complete", "verified"},
+        {}};
     const auto metric = [](const RunEntry& run, const char* name) {
         const auto found = run.metrics.find(name);
         return found == run.metrics.end() ? std::string("-") : number(found->second);
     };
     for (const RunEntry& run : runs) {
         const TrialNote note = note_of(notes, run);
-        out.rows.push_back({run.folder, run.group, run.task, std::to_string(run.trial), metric(run, "play_time_s"),
-                            metric(run, "accumulated_collision_n"), run.complete ? "yes" : "no",
-                            note.verified.empty() ? "-" : note.verified});
+        const auto reached = run.metrics.find("goal_reached");
+        out.rows.push_back({run.folder, run.group, run.task, std::to_string(run.trial),
+                            reached == run.metrics.end() ? "-"
+                            : reached->second > 0.5      ? "reached"
+                                                         : "not reached",
+                            metric(run, "score"), metric(run, "play_time_s"), metric(run, "accumulated_collision_n"),
+                            run.complete ? "yes" : "no", note.verified.empty() ? "-" : note.verified});
         out.links.push_back(note.page);
     }
     return out;
@@ -253,11 +277,12 @@ Page study_page(const Protocol& protocol, const std::vector<Participant>& partic
     page.title = "Study " + protocol.name;
     const auto synthetic =
         std::count_if(participants.begin(), participants.end(), [](const Participant& p) { return p.synthetic; });
-    page.paragraphs.push_back(std::to_string(participants.size()) + " participants in " +
-                              std::to_string(protocol.groups.size()) + " groups, " +
-                              std::to_string(protocol.tasks.size()) + " tasks, " + std::to_string(protocol.trials) +
-                              " trials of each; " + std::to_string(runs.size()) + " runs are there. Trial " +
-                              std::to_string(protocol.trials) + " counts, those before are to learn.");
+    page.paragraphs.push_back(
+        std::to_string(participants.size()) + " participants in " + std::to_string(protocol.groups.size()) +
+        " groups, " + std::to_string(protocol.tasks.size()) + " tasks, " + std::to_string(protocol.trials) +
+        " trials of each; " + std::to_string(runs.size()) + " runs are there." +
+        (protocol.trials > 1 ? " Trial " + std::to_string(protocol.trials) + " counts, those before are to learn."
+                             : ""));
     if (synthetic > 0)
         page.paragraphs.push_back("SYNTHETIC: " + std::to_string(synthetic) +
                                   " of the participants are autopilots. Nothing here speaks of people.");
@@ -271,6 +296,7 @@ Page study_page(const Protocol& protocol, const std::vector<Participant>& partic
         page.details.push_back(table.medians(figure));
         if (protocol.groups.size() > 1) page.details.push_back(table.pairs(figure));
     }
+    page.tables.push_back(table.reached());
     if (protocol.trials > 1)
         for (const Figure& figure : {figures[0], figures[1]}) page.plots.push_back(table.learning(figure));
     page.details.push_back(trials_table(runs, notes));
@@ -281,12 +307,17 @@ std::string trials_csv(const std::vector<RunEntry>& runs) {
     std::string out = "folder,participant,group,task,trial,complete,version";
     for (const MetricInfo& metric : metric_table())
         out += "," + std::string(metric.name) + " [" + std::string(metric.unit) + "]";
+    for (const std::string column : result_figures) out += "," + column;
     out += "\n";
     for (const RunEntry& run : runs) {
         out += run.folder + "," + run.participant + "," + run.group + "," + run.task + "," + std::to_string(run.trial) +
                "," + (run.complete ? "yes" : "no") + "," + run.version;
         for (const MetricInfo& metric : metric_table()) {
             const auto found = run.metrics.find(std::string(metric.name));
+            out += "," + (found == run.metrics.end() ? std::string() : exact_number(found->second));
+        }
+        for (const std::string column : result_figures) {
+            const auto found = run.metrics.find(column.substr(0, column.find(' ')));
             out += "," + (found == run.metrics.end() ? std::string() : exact_number(found->second));
         }
         out += "\n";

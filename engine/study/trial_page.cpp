@@ -13,14 +13,16 @@ namespace {
 
 constexpr double margin_mm = 12.0;  // round the vessels ...
 constexpr double around_mm = 70.0;  // ... of which so much is shown round the tip's way
+constexpr double field_mm = 150.0;  // across the C-arm's view
 constexpr double force_width = 720.0, force_height = 120.0, force_most = 1.5;  // px, px, of the limit
 
 constexpr const char* style = R"css(
-body { font: 15px/1.45 sans-serif; color: #202020; background: #ffffff; max-width: 900px; margin: 1.5em auto; padding: 0 1em; }
+body { font: 15px/1.45 sans-serif; color: #202020; background: #ffffff; max-width: 960px; margin: 1.5em auto; padding: 0 1em; }
 h1 { font-size: 1.3em; }
 .views { display: flex; gap: 1em; flex-wrap: wrap; }
-figure { margin: 0; flex: 1 1 300px; }
-figure svg { width: 100%; height: 480px; background: #f6f6f6; }
+figure { margin: 0; flex: 1 1 260px; }
+figure svg { width: 100%; height: 440px; background: #f6f6f6; }
+figure canvas { width: 100%; height: 440px; background: #d8d8d8; }
 figcaption { font-size: 0.9em; }
 .force { width: 100%; height: auto; }
 .controls { display: flex; gap: 0.8em; align-items: center; margin: 0.8em 0; }
@@ -28,11 +30,59 @@ figcaption { font-size: 0.9em; }
 output { min-width: 15em; font-variant-numeric: tabular-nums; }
 )css";
 
-// Data first: time [s], x, y, z [mm], force [of the limit], beam.
+// Data first.  frames: time [s], x, y, z [mm], force [of the limit], beam, primary, secondary [deg], device [mm: x, y,
+// z of the first point, then steps, in tenths].  vessels: x, y, z, radius of either end [mm].
 constexpr const char* script = R"js(
 const byId = id => document.getElementById(id);
 const slider = byId('time'), button = byId('play'), pace = byId('pace');
 const dots = [byId('tip0'), byId('tip1')], trails = [byId('trail0'), byId('trail1')];
+const picture = byId('beam'), ink = picture.getContext('2d');
+// Image right and down of a C-arm, as the simulator's detector has them.
+function axes(f) {
+  const a = f[6] * Math.PI / 180, b = f[7] * Math.PI / 180;
+  const forward = [Math.sin(a) * Math.cos(b), -Math.cos(a) * Math.cos(b), Math.sin(b)];
+  const right = [Math.cos(a), Math.sin(a), 0];
+  const down = [right[1] * forward[2] - right[2] * forward[1], right[2] * forward[0] - right[0] * forward[2],
+                right[0] * forward[1] - right[1] * forward[0]];
+  return [right, down];
+}
+const along = (p, axis) => p[0] * axis[0] + p[1] * axis[1] + p[2] * axis[2];
+function line(f) {
+  const points = [];
+  let p = [0, 0, 0];
+  for (let i = 0; i < f[8].length; i += 3) {
+    p = [p[0] + f[8][i] / 10, p[1] + f[8][i + 1] / 10, p[2] + f[8][i + 2] / 10];
+    points.push(p);
+  }
+  return points;
+}
+function seen(f) {
+  const scale = Math.min(2, devicePixelRatio || 1), w = picture.width = scale * picture.clientWidth;
+  const h = picture.height = scale * picture.clientHeight, mm = Math.min(w, h) / fieldMm;
+  const [right, down] = axes(f), tip = [f[1], f[2], f[3]];
+  const at = p => [w / 2 + mm * (along(p, right) - along(tip, right)), h / 2 + mm * (along(p, down) - along(tip, down))];
+  ink.lineCap = ink.lineJoin = 'round';
+  ink.strokeStyle = '#c2bcbc';
+  for (const v of vessels) {
+    ink.lineWidth = mm * (v[3] + v[7]);
+    ink.beginPath();
+    ink.moveTo(...at(v));
+    ink.lineTo(...at(v.slice(4)));
+    ink.stroke();
+  }
+  const points = line(f);
+  ink.strokeStyle = '#202020';
+  ink.lineWidth = mm * deviceMm;
+  ink.beginPath();
+  points.forEach((p, i) => i ? ink.lineTo(...at(p)) : ink.moveTo(...at(p)));
+  ink.stroke();
+  ink.fillStyle = f[4] >= 1 ? '#d55e00' : '#0072b2';
+  ink.beginPath();
+  ink.arc(w / 2, h / 2, Math.max(3, mm * 1.5), 0, 7);
+  ink.fill();
+  const side = (x, plus, minus) => x ? ` ${x > 0 ? plus : minus} ${Math.abs(x).toFixed(0)}` : '';
+  byId('angles').textContent = 'As the C-arm stood:' + (side(f[6], 'LAO', 'RAO') + side(f[7], 'CRAN', 'CAUD') || ' AP');
+}
 const place = (view, f) => [view === 0 ? f[1] : f[2], -f[3]];
 let now = 0, last = null;
 function show(k) {
@@ -45,6 +95,7 @@ function show(k) {
     trails[v].setAttribute('points', frames.slice(0, Math.floor(now) + 1).map(g => place(v, g).join(',')).join(' '));
   }
   byId('cursor').setAttribute('transform', `translate(${forceX(f[0])} 0)`);
+  seen(f);
   slider.value = Math.floor(now);
   byId('reading').textContent = `${f[0].toFixed(1)} s, force ${(100 * f[4]).toFixed(0)} % of the limit` + (f[5] ? ', X-rays' : '');
 }
@@ -65,6 +116,7 @@ function start() {
 }
 button.onclick = () => last === null ? start() : stop();
 slider.oninput = () => { stop(); show(+slider.value); };
+onresize = () => show(now);
 show(0);
 )js";
 
@@ -141,18 +193,47 @@ std::string force_plot(std::span<const TrialFrame> frames) {
     return out;
 }
 
-std::string data_text(std::span<const TrialFrame> frames) {
-    std::string out = "const forceWidth = " + fixed(force_width, 0) + ";\nconst frames = [";
+/// The line in tenths of a mm: its first point, then steps from point to point, whose rounding does not add up.
+std::string device_text(const std::vector<Vec3>& line) {
+    std::string out = "[";
+    std::array<long, 3> last{};
+    for (const Vec3& p : line)
+        for (Index axis = 0; axis < 3; ++axis) {
+            const long now = std::lround(10.0 * p[axis]);
+            out += std::to_string(now - last[static_cast<std::size_t>(axis)]) + ",";
+            last[static_cast<std::size_t>(axis)] = now;
+        }
+    return out + "]";
+}
+
+std::string end_text(const CentrelineNode& node) {
+    const Vec3& p = node.position;
+    return fixed(p.x(), 1) + "," + fixed(p.y(), 1) + "," + fixed(p.z(), 1) + "," + fixed(node.radius, 1);
+}
+
+std::string data_text(const CentrelineGraph& vessels, std::span<const TrialFrame> frames, double device_mm) {
+    std::string out = "const forceWidth = " + fixed(force_width, 0) + ", fieldMm = " + fixed(field_mm, 0) +
+                      ", deviceMm = " + fixed(device_mm, 2) + ";\nconst vessels = [";
+    for (const auto& [a, b] : vessels.edges) {
+        const CentrelineNode& from = vessels.nodes[static_cast<std::size_t>(a)];
+        const CentrelineNode& to = vessels.nodes[static_cast<std::size_t>(b)];
+        const bool near = std::any_of(frames.begin(), frames.end(), [&](const TrialFrame& f) {
+            return (f.tip - from.position).squaredNorm() < field_mm * field_mm;
+        });
+        if (near) out += "[" + end_text(from) + "," + end_text(to) + "],\n";
+    }
+    out += "];\nconst frames = [";
     for (const TrialFrame& f : frames)
         out += "[" + fixed(f.time_s, 2) + "," + fixed(f.tip.x(), 1) + "," + fixed(f.tip.y(), 1) + "," +
-               fixed(f.tip.z(), 1) + "," + fixed(f.force_bar, 3) + "," + (f.beam_on ? "1" : "0") + "],\n";
+               fixed(f.tip.z(), 1) + "," + fixed(f.force_bar, 3) + "," + (f.beam_on ? "1" : "0") + "," +
+               fixed(f.primary_deg, 1) + "," + fixed(f.secondary_deg, 1) + "," + device_text(f.device) + "],\n";
     return out + "];\n";
 }
 
 }  // namespace
 
 std::string trial_page(const RunEntry& run, const CentrelineGraph& vessels, std::span<const TrialFrame> frames,
-                       const std::string& verified, const std::string& report) {
+                       double device_mm, const std::string& verified, const std::string& report) {
     const std::string title =
         run.participant + " (" + run.group + "), task " + run.task + ", trial " + std::to_string(run.trial);
     std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" +
@@ -162,7 +243,9 @@ std::string trial_page(const RunEntry& run, const CentrelineGraph& vessels, std:
     out += "</p>\n";
     if (frames.empty()) return out + "<p>Nothing was recorded in this trial.</p>\n</body>\n</html>\n";
     out +=
-        "<div class=\"views\">\n" + view_of(0, "From the front: the patient's left is to the right", vessels, frames) +
+        "<div class=\"views\">\n<figure><canvas id=\"beam\"></canvas><figcaption "
+        "id=\"angles\"></figcaption></figure>\n" +
+        view_of(0, "From the front: the patient's left is to the right", vessels, frames) +
         view_of(1, "From the patient's left: the back is to the right", vessels, frames) +
         "</div>\n<div class=\"controls\"><button id=\"play\">Play</button><input id=\"time\" type=\"range\" min=\"0\" "
         "max=\"" +
@@ -171,8 +254,12 @@ std::string trial_page(const RunEntry& run, const CentrelineGraph& vessels, std:
         "<option value=\"4\" selected>4 x</option><option value=\"16\">16 x</option></select><output "
         "id=\"reading\"></output></div>\n" +
         force_plot(frames) + "<p>With its fluoroscopy, in the trainer: <code>cathlab play --replay " +
-        xml_escaped(run.folder) + "</code>, from the study's folder. The vessels are drawn at rest.</p>\n<script>\n" +
-        data_text(frames) + script + "</script>\n</body>\n</html>\n";
+        xml_escaped(run.folder) + "</code>, from the study's folder. The vessels are drawn at rest" +
+        (std::all_of(frames.begin(), frames.end(), [](const TrialFrame& f) { return f.device.empty(); })
+             ? std::string(
+                   ", and of the device its tip: the rest of it is known where the report was made with --verify")
+             : std::string()) +
+        ".</p>\n<script>\n" + data_text(vessels, frames, device_mm) + script + "</script>\n</body>\n</html>\n";
     return out;
 }
 

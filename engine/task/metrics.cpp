@@ -111,6 +111,7 @@ void MetricsAccumulator::add(const Channels& c, double dt) {
     contacts_.add(c.force_bar_n, dt);
     bar_max_ = std::max(bar_max_, c.force_bar);
     if (c.force_bar > 1.0) above_limit_ += dt;
+    if (c.beam_on > 0.5 && c.roadmap > 0.5) roadmap_ += dt;
     duration_ += dt;
     last_ = c;
 }
@@ -158,6 +159,7 @@ Metrics MetricsAccumulator::result() const {
     m.accumulated_collision_n = contacts_.peak_sum_n();
     m.collision_impulse_ns = contacts_.impulse_ns();
     m.fluoroscopy_time_s = last_.beam_time_s;
+    m.roadmap_time_s = roadmap_;
     m.air_kerma_mgy = last_.air_kerma_mgy;
     m.dose_area_product_gycm2 = last_.dose_area_product_gycm2;
     m.contrast_ml = last_.contrast_injected_ml;

@@ -80,7 +80,7 @@ public:
 
 private:
     double dt_ = 0.0;
-    double duration_ = 0.0, idle_ = 0.0, above_limit_ = 0.0, bar_max_ = 0.0;
+    double duration_ = 0.0, idle_ = 0.0, above_limit_ = 0.0, bar_max_ = 0.0, roadmap_ = 0.0;
     double first_motion_ = -1.0;
     std::size_t first_moving_step_ = 0, last_moving_step_ = 0;
     DeviceTrack wire_, catheter_;

@@ -23,6 +23,7 @@ CATHLAB_METRIC(contacts,                  "1",      "contact events: B rises abo
 CATHLAB_METRIC(accumulated_collision_n,   "N",      "sum over the contact events of the event's largest B")
 CATHLAB_METRIC(collision_impulse_ns,      "N s",    "integral of B over the contact events")
 CATHLAB_METRIC(fluoroscopy_time_s,        "s",      "beam-on time")
+CATHLAB_METRIC(roadmap_time_s,            "s",      "part of it in which the picture lay over a roadmap")
 CATHLAB_METRIC(air_kerma_mgy,             "mGy",    "cumulative air kerma at the patient entrance reference point")
 CATHLAB_METRIC(dose_area_product_gycm2,   "Gy cm2", "cumulative dose-area product")
 CATHLAB_METRIC(contrast_ml,               "mL",     "contrast medium injected")

@@ -62,4 +62,11 @@ Vec3 Way::at(double arc_mm) const {
            share * graph_->nodes[at_index(nodes_[k])].position;
 }
 
+std::vector<CentrelineNode> Way::between(double from_mm, double to_mm) const {
+    std::vector<CentrelineNode> out;
+    for (std::size_t k = 0; k < nodes_.size(); ++k)
+        if (arc_[k] >= from_mm && arc_[k] <= to_mm) out.push_back(graph_->nodes[at_index(nodes_[k])]);
+    return out;
+}
+
 }  // namespace cathlab

@@ -23,6 +23,8 @@ public:
     double length_mm() const { return arc_.back(); }
     /// Beyond either end: the end.
     Vec3 at(double arc_mm) const;
+    /// Its nodes from arc to arc.
+    std::vector<CentrelineNode> between(double from_mm, double to_mm) const;
 
 private:
     const CentrelineGraph* graph_;

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "program.h"
+#include "record/sums.h"
 #include "scene/temporary_folder.h"
 
 namespace cathlab {
@@ -40,6 +41,22 @@ TEST(Study, IsRehearsedVerifiedAndReportedByThreeCommandsAndAChangedByteIsFound)
     EXPECT_NE(changed.text.find("DIFFERS: runs/S01/e-1"), std::string::npos) << changed.text;
     EXPECT_NE(text_of(study + "/report.html").find("2 runs stepped again from their inputs, 1 agree"),
               std::string::npos);
+
+    // What only a second look at the run can find: an edited result or event whose sum was made to fit.
+    --rows[place];
+    std::ofstream(trace) << rows;
+    const std::string run = study + "/runs/S01/e-1";
+    EXPECT_EQ(call("score " + run + " --threads 2").code, 0);
+    const std::string result = text_of(run + "/result.json");
+    std::string better = result;
+    better.insert(better.find("\"score\": ") + 9, "1");
+    std::ofstream(run + "/result.json") << better;
+    std::ofstream(run + "/events.jsonl", std::ios::app) << "{}\n";
+    write_sums(run);
+    const Outcome scored = call("score " + run + " --threads 2");
+    EXPECT_EQ(scored.code, 1);
+    EXPECT_NE(scored.text.find("result.json is not what the inputs say"), std::string::npos) << scored.text;
+    EXPECT_NE(scored.text.find("events.jsonl is not what the inputs say"), std::string::npos) << scored.text;
 
     EXPECT_EQ(call("study report " + study).code, 0) << "without --verify nobody looks";
     EXPECT_NE(text_of(study + "/report.html").find("Not verified"), std::string::npos);

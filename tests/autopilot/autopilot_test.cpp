@@ -56,6 +56,19 @@ TEST(Autopilot, AnExpertBringsTheWireFromEitherCoronaryOstiumToItsTarget) {
     }
 }
 
+TEST(Autopilot, AnExpertBringsTheCatheterToEitherCoronaryOstiumAndANoviceTakesLongerAndPressesHarder) {
+    double expert_bar = 0.0, novice_bar = 0.0;
+    for (const char* task : {"b.toml", "c.toml"}) {
+        const Outcome expert = fly(task, "expert", 120.0), novice = fly(task, "novice", 300.0);
+        EXPECT_TRUE(expert.reached) << task;
+        EXPECT_LT(expert.bar, 1.0) << task;
+        EXPECT_GT(novice.seconds, expert.seconds) << task;
+        expert_bar += expert.bar;
+        novice_bar += novice.bar;
+    }
+    EXPECT_GT(novice_bar, expert_bar);
+}
+
 TEST(Tasks, EveryOneOfTheProjectIsValidAndItsGoalCanBeReachedByVessels) {
     const std::string root = CATHLAB_SOURCE_DIR, folder = root + "/scenes/tasks";
     for (const std::string& name : names_in_folder(folder, ".toml")) {

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "core/errors.h"
 
@@ -43,6 +44,33 @@ TEST_F(Sums, EveryChangedByteOfAFileIsFound) {
         ASSERT_EQ(check_sums(folder_).size(), 1U);
         EXPECT_NE(check_sums(folder_).front().find("trace.csv was changed"), std::string::npos);
     }
+}
+
+TEST_F(Sums, NoByteOfAnyFileNorOfTheListItselfCanBeChanged) {
+    write("inputs.jsonl", "{\"step\": 0}\n");
+    write("trace.csv", "step\n0\n");
+    write_sums(folder_);
+    for (const char* name : {"inputs.jsonl", "trace.csv", "sums.json"}) {
+        std::ifstream in(folder_ + "/" + name, std::ios::binary);
+        const std::string whole{std::istreambuf_iterator<char>(in), {}};
+        for (std::size_t place = 0; place < whole.size(); ++place)
+            for (const char bits : {'\x01', '\x20', '\x80'}) {
+                std::string changed = whole;
+                changed[place] = static_cast<char>(changed[place] ^ bits);
+                write(name, changed);
+                bool found = true;
+                try {
+                    found = !check_sums(folder_).empty();
+                } catch (const UserError&) {
+                    // Said in its own way.
+                }
+                EXPECT_TRUE(found) << name << ", byte " << place;
+            }
+        write(name, whole);
+    }
+    EXPECT_TRUE(check_sums(folder_).empty());
+    write("sums.json", "{}\n\n");
+    EXPECT_FALSE(check_sums(folder_).empty());
 }
 
 TEST_F(Sums, WhatIsMissingOrWasAddedIsFound) {

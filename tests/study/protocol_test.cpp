@@ -128,7 +128,9 @@ TEST_F(Study, ReportsWhatItCanAndSaysWhatItCannot) {
     std::vector<RunEntry> runs;
     for (int k = 0; k < 6; ++k) {
         runs.push_back(run("E" + std::to_string(k), "expert", "a", 20.0 + k));
+        runs.back().metrics["goal_reached"] = k < 4 ? 1.0 : 0.0;
         runs.push_back(run("N" + std::to_string(k), "novice", "a", 60.0 + 2 * k));
+        runs.back().metrics["goal_reached"] = 1.0;
     }
     const Page page = study_page(protocol_, {{"E0", "expert", true}}, runs);
     ASSERT_FALSE(page.tables.empty());
@@ -138,6 +140,8 @@ TEST_F(Study, ReportsWhatItCanAndSaysWhatItCannot) {
     EXPECT_EQ(row[3], "0.0039");  // H = 8.3077, chi-squared with one degree of freedom
     EXPECT_EQ(page.tables.front().rows[1][1], "-");
     EXPECT_NE(html_page(page).find("SYNTHETIC"), std::string::npos);
+    EXPECT_EQ(page.tables.back().rows[0], (std::vector<std::string>{"a", "4 of 6", "6 of 6"}));
+    EXPECT_EQ(page.tables.back().rows[1][1], "-");
     Protocol one = protocol_;
     one.groups = {"expert"};
     EXPECT_NE(html_page(study_page(one, {}, runs)).find("no test is computed"), std::string::npos);

@@ -110,6 +110,7 @@ TEST_F(Index, IsRebuiltFromTheFoldersAndSaysWhatItLeftOut) {
     write("runs/a/manifest.json", manifest(true));
     write("runs/a/trial.json", R"({"participant": "P01", "task": "A", "trial": 1})");
     write("runs/a/metrics.json", R"({"play_time_s": 70.5, "note": "text is no metric"})");
+    write("runs/a/result.json", R"({"reached": true, "score": 81.5, "aids": {"inner_view_s": 12.0}})");
     write("runs/cut/manifest.json", manifest(false));
     write("runs/cut/trial.json", R"({"participant": "P01", "task": "A", "trial": 2})");
     write("runs/broken/manifest.json", "{\"participant\": ");
@@ -132,7 +133,9 @@ TEST_F(Index, IsRebuiltFromTheFoldersAndSaysWhatItLeftOut) {
     EXPECT_EQ(all[0].folder, "runs/a");
     EXPECT_EQ(all[0].participant, "P01");
     EXPECT_EQ(all[0].scene_hash, "00000000000000ff");
-    EXPECT_EQ(all[0].metrics, (std::map<std::string, double>{{"play_time_s", 70.5}}));
+    EXPECT_EQ(all[0].metrics,
+              (std::map<std::string, double>{
+                  {"play_time_s", 70.5}, {"goal_reached", 1.0}, {"score", 81.5}, {"inner_view_s", 12.0}}));
     EXPECT_FALSE(all[1].complete);
 }
 

@@ -28,11 +28,12 @@ bool has(const std::string& text, const std::string& part) {
 }
 
 TEST(TrialPage, HoldsEveryFrameTheVesselsFromTwoSidesAndTheWayToTheReport) {
-    const std::vector<TrialFrame> frames{{0.0, Vec3(1.0, 2.0, 3.0), 0.0, false},
-                                         {0.1, Vec3(4.0, 5.0, 6.04), 0.25, true}};
-    const std::string page = trial_page(run(), one_vessel(), frames, "verified", "../report.html");
-    EXPECT_TRUE(has(page, "[0.00,1.0,2.0,3.0,0.000,0],"));
-    EXPECT_TRUE(has(page, "[0.10,4.0,5.0,6.0,0.250,1],"));
+    const std::vector<TrialFrame> frames{
+        {0.0, Vec3(1.0, 2.0, 3.0), 0.0, false},
+        {0.1, Vec3(4.0, 5.0, 6.04), 0.25, true, -30.0, 20.0, {Vec3(4.0, 5.0, 6.04), Vec3(4.04, 4.94, 2.04)}}};
+    const std::string page = trial_page(run(), one_vessel(), frames, 2.0, "verified", "../report.html");
+    EXPECT_TRUE(has(page, "[0.00,1.0,2.0,3.0,0.000,0,0.0,0.0,[]],"));
+    EXPECT_TRUE(has(page, "[0.10,4.0,5.0,6.0,0.250,1,-30.0,20.0,[40,50,60,0,-1,-40,]],"));
     EXPECT_TRUE(has(page, "points=\"0.0,-0.0 10.0,-100.0\" stroke-width=\"8.0\"")) << "from the front: x, z up";
     EXPECT_TRUE(has(page, "points=\"0.0,-0.0 20.0,-100.0\" stroke-width=\"8.0\"")) << "from the left: y, z up";
     EXPECT_TRUE(has(page, "href=\"../report.html\""));
@@ -43,7 +44,7 @@ TEST(TrialPage, HoldsEveryFrameTheVesselsFromTwoSidesAndTheWayToTheReport) {
 }
 
 TEST(TrialPage, OfAnEmptyTrialSaysSo) {
-    const std::string page = trial_page(run(), one_vessel(), {}, "", "../report.html");
+    const std::string page = trial_page(run(), one_vessel(), {}, 2.0, "", "../report.html");
     EXPECT_TRUE(has(page, "Nothing was recorded"));
     EXPECT_FALSE(has(page, "<script>"));
 }

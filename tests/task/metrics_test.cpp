@@ -120,6 +120,17 @@ TEST(Metrics, DoseAndContrastAreTheLastOfTheirChannels) {
     EXPECT_EQ(m.contrast_ml, 7.1);
 }
 
+TEST(Metrics, ARoadmapIsAnAidWhileTheBeamIsOn) {
+    MetricsAccumulator sum;
+    for (const auto& [beam, roadmap] : {std::pair{1.0, 1.0}, {1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}}) {
+        Channels c{};
+        c.beam_on = beam;
+        c.roadmap = roadmap;
+        sum.add(c, 0.5);
+    }
+    EXPECT_DOUBLE_EQ(sum.result().roadmap_time_s, 1.0);
+}
+
 TEST(Metrics, NothingRecordedIsAllZeroAndAChangedStepIsAMistake) {
     MetricsAccumulator metrics;
     const Metrics none = metrics.result();

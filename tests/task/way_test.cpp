@@ -31,6 +31,10 @@ TEST(Way, KnowsHowFarATipHasComeAndHowFarOffItIs) {
     EXPECT_FALSE(place.astray);
     EXPECT_NEAR((way.at(33.0) - Vec3(0, 0, 33)).norm(), 0.0, 1e-12);
     EXPECT_EQ(way.at(1e9), Vec3(0, 0, 100));
+    const auto some = way.between(39.0, 44.0);
+    ASSERT_EQ(some.size(), 3U);
+    EXPECT_EQ(some.front().position, Vec3(0, 0, 40));
+    EXPECT_EQ(some.back().position, Vec3(0, 0, 44));
 }
 
 TEST(Way, ATipInTheBranchIsAstrayAndOneAtTheForkIsNot) {
