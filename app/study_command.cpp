@@ -43,6 +43,12 @@ struct StudyOptions {
     bool verify = false;
 };
 
+[[noreturn]] void fail_without_task(const std::string& task, const std::vector<std::string>& known) {
+    const std::string near = did_you_mean(task, known);
+    throw UserError(
+        "no task '" + task + "'" + near + (near.empty() ? "; there is: " : " There is: ") + comma_list(known), true);
+}
+
 void init(const StudyOptions& options, const AppContext& context) {
     Protocol protocol;
     protocol.name = options.name.empty() ? fs::path(options.folder).filename().string() : options.name;
@@ -51,13 +57,8 @@ void init(const StudyOptions& options, const AppContext& context) {
     protocol.trials = options.trials;
     check_protocol(protocol);
     const auto known = names_in_folder(context.data_root + "/scenes/tasks", ".toml");
-    for (const std::string& task : protocol.tasks) {
-        if (fs::exists(task_scene(task, context))) continue;
-        const std::string near = did_you_mean(task, known);
-        throw UserError(
-            "no task '" + task + "'" + near + (near.empty() ? "; there is: " : " There is: ") + comma_list(known),
-            true);
-    }
+    for (const std::string& task : protocol.tasks)
+        if (!fs::exists(task_scene(task, context))) fail_without_task(task, known);
     write_study(options.folder, protocol);
     std::printf("%s: %zu groups, %zu tasks, %d trials of each\n", options.folder.c_str(), protocol.groups.size(),
                 protocol.tasks.size(), protocol.trials);

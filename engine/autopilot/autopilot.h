@@ -57,19 +57,20 @@ private:
     Vec3 middle_ = Vec3::Zero();  // of the goal's swing
     double farthest_mm_ = 0.0, stuck_s_ = 0.0, back_mm_ = 0.0;
     double astray_s_ = 0.0, astray_mm_ = 0.0;  // how long and how far it went on in a wrong branch
-    int attempts_ = 0;
-    bool arrived_ = false;
     double stood_s_ = 0.0, near_enough_ = 1.0;
     // Of a wire.
-    bool overshot_ = false;
     double slower_ = 1.0;  // of its speed beside the goal, after each time that it ran past
     // Of a catheter.
-    bool near_ = false;
     double seeks_mm_ = 0.0;    // beside the goal: which way the plan wants it to go
     double nearest_mm_ = 0.0;  // that it came to the goal in this attempt
     double refused_s_ = 0.0;
     double room_ = 1.0;  // share of the skill's room that it still insists on
     Vec2 proximal_ = Vec2::Zero(), distal_ = Vec2::Zero();
+
+    int attempts_ = 0;
+    bool arrived_ = false;
+    bool overshot_ = false;  // a wire
+    bool near_ = false;      // a catheter
 };
 
 }  // namespace cathlab
