@@ -345,7 +345,13 @@ void ContactSet::set_compliance(std::span<const double> particle_compliance, con
             rows_[r].compliance = std::max(compliance, settings_.min_compliance_mm_per_mn);
         }
     });
-    for (const Index p : particle_) touching_[at(p)] = 0;
+    touched_.clear();
+    for (const Index p : particle_) {
+        if (touching_[at(p)] < 0) continue;
+        touching_[at(p)] = -1;
+        touched_.push_back(p);
+    }
+    for (const Index p : touched_) touching_[at(p)] = 0;
 }
 
 void ContactSet::refresh(std::span<const DeviceSample> samples_now, std::span<const Vec3> particles_now,

@@ -156,6 +156,8 @@ public:
     std::span<const ChainRow> rows() const { return rows_; }
     std::span<const WallRow> wall_rows() const { return wall_; }
     std::span<const Index> particles() const { return particle_; }
+    /// The particles of all rows, each once.
+    std::span<const Index> touched() const { return touched_; }
     std::span<const double> weights() const { return weight_; }
     /// Arc lengths, ascending, of the samples of a device that had a row at the last detect.
     std::vector<double> arcs_at_the_wall(Index device) const;
@@ -194,6 +196,7 @@ private:
     std::vector<Index> particle_;
     std::vector<double> weight_;
     std::vector<std::size_t> room_;  ///< in detect: where the particles of a row begin before they close ranks
+    std::vector<Index> touched_;     ///< particle_, each once
     std::vector<Index> touching_;    ///< N_j, one a particle; zero outside set_compliance
     Memory memory_;
 };

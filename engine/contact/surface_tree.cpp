@@ -1,6 +1,7 @@
 #include "contact/surface_tree.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 
 namespace cathlab {
@@ -28,6 +29,7 @@ SurfaceTree build_surface_tree(std::span<const Triangle> triangles, std::span<co
     tree.order.resize(triangles.size());
     std::iota(tree.order.begin(), tree.order.end(), 0);
     tree.nodes.push_back({0, count});
+    tree.parent.push_back(-1);
     tree.level.push_back(0);
     // Nodes wait in `nodes` as leaves with all their triangles; each is split when its turn comes, so children follow
     // parents.
@@ -59,10 +61,13 @@ SurfaceTree build_surface_tree(std::span<const Triangle> triangles, std::span<co
         std::sort(begin + half, end);
         const auto left = static_cast<Index>(tree.nodes.size());
         tree.nodes[n] = {left, 0};
+        tree.parent.insert(tree.parent.end(), 2, static_cast<Index>(n));
         tree.nodes.push_back({node.first, half});
         tree.nodes.push_back({node.first + half, node.count - half});
     }
+    tree.leaf_of_node.assign(tree.nodes.size(), -1);
     for (const Index leaf : tree.leaves) {
+        tree.leaf_of_node[static_cast<std::size_t>(leaf)] = static_cast<Index>(tree.leaf_vertex_start.size());
         tree.leaf_vertex_start.push_back(static_cast<Index>(tree.leaf_vertex.size()));
         const SurfaceTree::Node& node = tree.nodes[static_cast<std::size_t>(leaf)];
         const auto first = static_cast<std::ptrdiff_t>(tree.leaf_vertex.size());
@@ -139,9 +144,32 @@ void refit(const SurfaceTree& tree, const TreePart& part, std::span<const Triang
     }
 }
 
+namespace {
+
+/// Nodes above some leaves (node numbers, ascending), descending.  Nodes are numbered level by level, so the parents of
+/// nodes that descend do so too.
+std::vector<Index> nodes_above(const SurfaceTree& tree, const std::vector<Index>& leaf_nodes) {
+    std::vector<Index> above;
+    std::size_t next = 0;  // of `above`: whose parent comes
+    for (auto leaf = leaf_nodes.rbegin();;) {
+        Index node = -1;
+        if (leaf != leaf_nodes.rend() && (next == above.size() || *leaf > above[next])) {
+            node = *leaf++;
+        } else if (next < above.size()) {
+            node = above[next++];
+        } else {
+            return above;
+        }
+        const Index parent = tree.parent[static_cast<std::size_t>(node)];
+        if (parent >= 0 && (above.empty() || above.back() != parent)) above.push_back(parent);
+    }
+}
+
+}  // namespace
+
 TreePart part_near(const SurfaceTree& tree, const TreeBoxes& boxes, std::span<const Vec3> places, double reach,
                    const TreePart* of) {
-    std::vector<std::uint8_t> wanted(tree.nodes.size(), 0);
+    std::vector<std::uint8_t> wanted(tree.leaves.size(), 0);
     NearLeaves near;
     for (std::size_t i = 0; i < places.size();) {
         const Vec3& centre = places[i];
@@ -149,28 +177,24 @@ TreePart part_near(const SurfaceTree& tree, const TreeBoxes& boxes, std::span<co
         for (; i < places.size() && (places[i] - centre).squaredNorm() <= ball_mm * ball_mm; ++i)
             radius = std::max(radius, (places[i] - centre).norm());
         near.gather(tree, boxes, centre, radius + reach);
-        for (const Index n : near.nodes) wanted[static_cast<std::size_t>(n)] = 1;
+        for (const Index n : near.nodes)
+            wanted[static_cast<std::size_t>(tree.leaf_of_node[static_cast<std::size_t>(n)])] = 1;
     }
     TreePart part;
+    std::vector<Index> leaf_nodes;
     std::vector<std::uint8_t> met(tree.vertex_count, 0);
     const std::size_t leaves = of ? of->leaves.size() : tree.leaves.size();
     for (std::size_t k = 0; k < leaves; ++k) {
         const std::size_t l = of ? static_cast<std::size_t>(of->leaves[k]) : k;
-        if (!wanted[static_cast<std::size_t>(tree.leaves[l])]) continue;
+        if (!wanted[l]) continue;
         part.leaves.push_back(static_cast<Index>(l));
+        leaf_nodes.push_back(tree.leaves[l]);
         for (Index v = tree.leaf_vertex_start[l]; v < tree.leaf_vertex_start[l + 1]; ++v)
             met[static_cast<std::size_t>(tree.leaf_vertex[static_cast<std::size_t>(v)])] = 1;
     }
     for (std::size_t v = 0; v < met.size(); ++v)
         if (met[v]) part.vertices.push_back(static_cast<Index>(v));
-    for (std::size_t n = tree.nodes.size(); n-- > 0;) {
-        const SurfaceTree::Node& node = tree.nodes[n];
-        if (node.count > 0) continue;
-        const auto left = static_cast<std::size_t>(node.first);
-        if (!wanted[left] && !wanted[left + 1]) continue;
-        wanted[n] = 1;
-        part.inner.push_back(static_cast<Index>(n));
-    }
+    part.inner = nodes_above(tree, leaf_nodes);
     return part;
 }
 

@@ -43,8 +43,10 @@ struct SurfaceTree {
     std::vector<Node> nodes;
     std::vector<Index> order;                           ///< triangle indices, leaf after leaf
     std::vector<Index> leaves;                          ///< nodes that are leaves, ascending
+    std::vector<Index> parent;                          ///< of every node; -1 = none
     std::vector<std::size_t> level;                     ///< nodes of depth d are [level[d], level[d + 1])
     std::size_t vertex_count = 0;                       ///< of the whole surface
+    std::vector<Index> leaf_of_node;                    ///< place in `leaves`; -1 = inner
     std::vector<Index> leaf_vertex_start, leaf_vertex;  ///< vertices of leaf l, each once: [start[l], start[l + 1])
 };
 

@@ -297,7 +297,7 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
             solve_wire(p, samples, h, rows, bore_rows);
             p.stage("contact");
             p.contacts->yield(wire_device, before, state.x, scratch.compliance);
-            limit_speed(wall, state, scratch, h, p.contacts->particles());
+            limit_speed(wall, state, scratch, h, p.contacts->touched());
             refresh_samples(p, samples);
             p.contacts->refresh(samples.list, state.x, workers);
         }

@@ -122,7 +122,7 @@ void WallForces::gather(const Parts& p) {
         force[static_cast<std::size_t>(particle)] += f;
     };
     for (const Index i : written_) force[static_cast<std::size_t>(i)].setZero();
-    const auto touched = p.contacts->particles();
+    const auto touched = p.contacts->touched();
     written_.assign(touched.begin(), touched.end());
     p.contacts->apply_to_wall(force);
     for (const CylinderRow& row : rows_)
