@@ -51,10 +51,15 @@ Input random_hands(std::uint64_t seed, double time_s) {
     return input;
 }
 
-std::string place(const DevicePoint& point, double time_s) {
+std::string place(const Parts& parts, const DevicePoint& point, double time_s) {
     std::ostringstream text;
     text << "at " << time_s << " s, " << (point.device == wire_device ? "wire" : "catheter") << ", " << point.arc_mm
          << " mm from its tip, at " << point.position.transpose();
+    const auto wall = parts.contacts->wall_rows();
+    for (std::size_t r = 0; r < wall.size(); ++r)
+        if (wall[r].device == point.device && std::fabs(wall[r].arc_mm - point.arc_mm) < 0.7)
+            text << " [row: " << parts.contacts->rows()[r].multiplier << " mN, gap " << parts.contacts->rows()[r].gap
+                 << " mm]";
     return text.str();
 }
 
@@ -74,7 +79,7 @@ void operate_at_random(const SceneSpec& spec, const SceneModels& models, std::ui
         const InsideAccount account = inside_account(run.parts, surface);
         if (account.deepest_mm > deepest) {
             deepest = account.deepest_mm;
-            where = place(account.deepest, run.world->time_s);
+            where = place(run.parts, account.deepest, run.world->time_s);
         }
         in_coronaries = std::max(in_coronaries, account.deepest_in_coronaries_mm);
         energy_uj = std::max(energy_uj, run.channels.wall_kinetic_energy_uj + run.parts.wire->energy_uj());
