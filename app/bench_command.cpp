@@ -152,6 +152,7 @@ void add_bench_command(CLI::App& app, AppContext& context) {
     command->add_flag("!--no-pictures", options->pictures, "leave the pictures out");
     add_bench_wall_command(*command);
     add_bench_device_commands(*command, context);
+    add_bench_fluoroscopy_command(*command, context);
     command->callback([options, command, &context] {
         if (command->get_subcommands().empty()) bench(*options, context);
     });

@@ -31,5 +31,7 @@ void add_bench_command(CLI::App& app, AppContext& context);
 void add_bench_wall_command(CLI::App& bench);
 /// `bench wire`, `bench contact` and `bench step`.
 void add_bench_device_commands(CLI::App& bench, AppContext& context);
+/// `bench fluoroscopy`.
+void add_bench_fluoroscopy_command(CLI::App& bench, AppContext& context);
 
 }  // namespace cathlab

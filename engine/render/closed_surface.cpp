@@ -21,7 +21,7 @@ void require_closed(const TriMesh& mesh, const std::string& what) {
                     place.data() + " mm");
 }
 
-void require_before_source(const FrameDescription& frame, const Projection& projection) {
+void require_before_source(const FrameDescription& frame, const Projection& projection, bool standing_too) {
     constexpr double clear_mm = 1.0;
     const Vec3 forward = projection.normal();
     const auto require = [&](const std::string& what, const auto& places, const auto& to_world) {
@@ -34,8 +34,9 @@ void require_before_source(const FrameDescription& frame, const Projection& proj
     const auto as_it_is = [](const Vec3& p) -> const Vec3& { return p; };
     require("lumen", frame.lumen.vertices, as_it_is);
     for (const FrameSolid& solid : frame.solids)
-        require("patient's " + solid.material, solid.mesh.vertices,
-                [&](const Vec3& p) { return solid.pose.to_world(p); });
+        if (standing_too || solid.moving)
+            require("patient's " + solid.material, solid.mesh.vertices,
+                    [&](const Vec3& p) { return solid.pose.to_world(p); });
     for (const FrameDevice& device : frame.devices) require(device.name, device.points, as_it_is);
 }
 

@@ -14,7 +14,7 @@ namespace cathlab {
 void require_closed(const TriMesh& mesh, const std::string& what);
 
 /// Rays leave the source towards the detector: what reaches back to the source's plane has no shadow.  Throws UserError
-/// with its name and by how much.
-void require_before_source(const FrameDescription& frame, const Projection& projection);
+/// with its name and by how much.  standing_too: solids that do not move as well, which are many vertices.
+void require_before_source(const FrameDescription& frame, const Projection& projection, bool standing_too);
 
 }  // namespace cathlab

@@ -84,35 +84,42 @@ void add_electronic_noise(ImageF& photons, double sigma, std::uint64_t seed, std
 }
 
 void blur(ImageF& image, double sigma_px, const Workers& workers) {
+    GaussianBlur().apply(image, sigma_px, workers);
+}
+
+void GaussianBlur::apply(ImageF& image, double sigma_px, const Workers& workers) {
     if (sigma_px < 0.15) return;
-    const std::vector<float> kernel = gaussian(sigma_px);
-    const auto taps = kernel.size();
-    const auto radius = taps / 2;
+    if (sigma_px != sigma_px_) {
+        kernel_ = gaussian(sigma_px);
+        sigma_px_ = sigma_px;
+    }
+    const std::size_t taps = kernel_.size(), radius = taps / 2;
     const auto width = static_cast<std::size_t>(image.width);
     const auto height = static_cast<std::size_t>(image.height);
-    ImageF across(image.width, image.height);
-    for_rows(image, workers, [&](std::size_t y) {
+    // Rows of a width that is a power of two would all fall on the same lines of the cache.
+    const std::size_t stride = width + 24;
+    across_.resize(stride * height);
+    const pixel_loops::Set& loops = pixel_loops::best();
+    workers.for_ranges(height, rows_per_task, [&](std::size_t begin, std::size_t end) {
         std::vector<float> padded(width + 2 * radius);
-        const float* row = image.values.data() + y * width;
-        std::copy(row, row + width, padded.begin() + static_cast<std::ptrdiff_t>(radius));
-        std::fill_n(padded.begin(), radius, row[0]);
-        std::fill_n(padded.end() - static_cast<std::ptrdiff_t>(radius), radius, row[width - 1]);
-        float* out = across.values.data() + y * width;
-        std::fill_n(out, width, 0.0F);
-        for (std::size_t k = 0; k < taps; ++k) {
-            const float weight = kernel[k];
-            const float* in = padded.data() + k;
-            for (std::size_t x = 0; x < width; ++x) out[x] += weight * in[x];
+        std::vector<const float*> shifted(taps);
+        for (std::size_t k = 0; k < taps; ++k) shifted[k] = padded.data() + k;
+        for (std::size_t y = begin; y < end; ++y) {
+            const float* row = image.values.data() + y * width;
+            std::copy(row, row + width, padded.begin() + static_cast<std::ptrdiff_t>(radius));
+            std::fill_n(padded.begin(), radius, row[0]);
+            std::fill_n(padded.end() - static_cast<std::ptrdiff_t>(radius), radius, row[width - 1]);
+            loops.weigh(shifted.data(), kernel_.data(), taps, width, across_.data() + y * stride);
         }
     });
-    for_rows(image, workers, [&](std::size_t y) {
-        float* out = image.values.data() + y * width;
-        std::fill_n(out, width, 0.0F);
-        for (std::size_t k = 0; k < taps; ++k) {
-            const std::size_t from = std::min(height - 1, y + k > radius ? y + k - radius : 0);
-            const float weight = kernel[k];
-            const float* in = across.values.data() + from * width;
-            for (std::size_t x = 0; x < width; ++x) out[x] += weight * in[x];
+    workers.for_ranges(height, rows_per_task, [&](std::size_t begin, std::size_t end) {
+        std::vector<const float*> rows(taps);
+        for (std::size_t y = begin; y < end; ++y) {
+            for (std::size_t k = 0; k < taps; ++k) {
+                const std::size_t from = std::min(height - 1, y + k > radius ? y + k - radius : 0);
+                rows[k] = across_.data() + from * stride;
+            }
+            loops.weigh(rows.data(), kernel_.data(), taps, width, image.values.data() + y * width);
         }
     });
 }
@@ -132,38 +139,49 @@ void recurse(ImageF& history, const ImageF& x, double b, const Workers& workers)
     });
 }
 
-ImageF wide_blur(const ImageF& image, double sigma_px) {
+ImageF wide_blur(const ImageF& image, double sigma_px, const Workers& workers) {
     // Means over blocks of a fifth of sigma, a Gaussian on those, and bilinear interpolation back.
     const int block = std::max(1, static_cast<int>(sigma_px / 5));
     ImageF coarse((image.width + block - 1) / block, (image.height + block - 1) / block);
-    for (int cy = 0; cy < coarse.height; ++cy) {
-        for (int cx = 0; cx < coarse.width; ++cx) {
-            double sum = 0;
-            int count = 0;
-            for (int y = cy * block; y < std::min(image.height, (cy + 1) * block); ++y) {
-                for (int x = cx * block; x < std::min(image.width, (cx + 1) * block); ++x, ++count)
-                    sum += image.at(x, y);
+    workers.for_ranges(static_cast<std::size_t>(coarse.height), 1, [&](std::size_t begin, std::size_t end) {
+        for (auto cy = static_cast<int>(begin); cy < static_cast<int>(end); ++cy) {
+            for (int cx = 0; cx < coarse.width; ++cx) {
+                double sum = 0;
+                int count = 0;
+                for (int y = cy * block; y < std::min(image.height, (cy + 1) * block); ++y) {
+                    for (int x = cx * block; x < std::min(image.width, (cx + 1) * block); ++x, ++count)
+                        sum += image.at(x, y);
+                }
+                coarse.values[coarse.offset(cx, cy)] = static_cast<float>(sum / count);
             }
-            coarse.values[coarse.offset(cx, cy)] = static_cast<float>(sum / count);
         }
-    }
+    });
     blur(coarse, sigma_px / block, Workers());
+    struct Between {
+        std::size_t first;
+        float share;
+    };
+    const auto between = [&](int at, int count) {
+        const double f = std::clamp((at + 0.5) / block - 0.5, 0.0, count - 1.0);
+        const int first = std::min(static_cast<int>(f), std::max(0, count - 2));
+        return Between{static_cast<std::size_t>(first), static_cast<float>(f - first)};
+    };
+    std::vector<Between> columns;
+    for (int x = 0; x < image.width; ++x) columns.push_back(between(x, coarse.width));
+    const std::size_t next = coarse.width > 1 ? 1 : 0;
     ImageF out(image.width, image.height);
-    for (int y = 0; y < image.height; ++y) {
-        const double fy = std::clamp((y + 0.5) / block - 0.5, 0.0, coarse.height - 1.0);
-        const int y0 = std::min(static_cast<int>(fy), std::max(0, coarse.height - 2));
-        const int y1 = std::min(y0 + 1, coarse.height - 1);
-        const auto ty = static_cast<float>(fy - y0);
-        for (int x = 0; x < image.width; ++x) {
-            const double fx = std::clamp((x + 0.5) / block - 0.5, 0.0, coarse.width - 1.0);
-            const int x0 = std::min(static_cast<int>(fx), std::max(0, coarse.width - 2));
-            const int x1 = std::min(x0 + 1, coarse.width - 1);
-            const auto tx = static_cast<float>(fx - x0);
-            const float top = coarse.at(x0, y0) + tx * (coarse.at(x1, y0) - coarse.at(x0, y0));
-            const float low = coarse.at(x0, y1) + tx * (coarse.at(x1, y1) - coarse.at(x0, y1));
-            out.values[out.offset(x, y)] = top + ty * (low - top);
+    for_rows(out, workers, [&](std::size_t y) {
+        const Between row = between(static_cast<int>(y), coarse.height);
+        const auto coarse_width = static_cast<std::size_t>(coarse.width);
+        const float* upper = coarse.values.data() + row.first * coarse_width;
+        const float* lower = coarse.height > 1 ? upper + coarse_width : upper;
+        float* to = out.values.data() + y * columns.size();
+        for (const auto& [first, share] : columns) {
+            const float top = upper[first] + share * (upper[first + next] - upper[first]);
+            const float low = lower[first] + share * (lower[first + next] - lower[first]);
+            *to++ = top + row.share * (low - top);
         }
-    }
+    });
     return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "core/parallel.h"
 #include "imaging/image.h"
@@ -24,11 +25,22 @@ void add_electronic_noise(ImageF& photons, double sigma, std::uint64_t seed, std
 /// the Nyquist frequency (taps of sum 1, radius max(5, ceil(3 sigma))); edges repeat.  sigma < 0.15 does nothing.
 void blur(ImageF& image, double sigma_px, const Workers& workers);
 
+/// The same for one picture after another: keeps its taps and its memory.
+class GaussianBlur {
+public:
+    void apply(ImageF& image, double sigma_px, const Workers& workers);
+
+private:
+    double sigma_px_ = -1.0;
+    std::vector<float> kernel_;
+    std::vector<float> across_;  // blurred along the rows
+};
+
 /// y = (1 - b) x + b y'.  An empty or differently sized history takes x.  For independent noise the standard deviation
 /// falls to sqrt((1 - b) / (1 + b)).  b in [0, 1).
 void recurse(ImageF& history, const ImageF& x, double b, const Workers& workers);
 
 /// A wide blur of sigma_px pixels made on a coarse grid (for scatter and for harmonisation: sigma of tens of pixels).
-ImageF wide_blur(const ImageF& image, double sigma_px);
+ImageF wide_blur(const ImageF& image, double sigma_px, const Workers& workers = Workers());
 
 }  // namespace cathlab

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "core/check.h"
@@ -13,11 +14,9 @@
 #include "render/detector.h"
 #include "render/device_chords.h"
 #include "render/fast_math.h"
-#include "render/gl_device.h"
 #include "render/image_intensifier.h"
 #include "render/path_lengths.h"
 #include "render/path_raster.h"
-#include "render/path_surface.h"
 #include "render/pixel_loops.h"
 #include "render/projection.h"
 #include "render/scatter.h"
@@ -46,6 +45,12 @@ BinValues difference(const BeamTable& beam, const std::string& inside, const std
     return mu;
 }
 
+void resize(ImageF& image, const Projection& projection) {
+    image.width = projection.width();
+    image.height = projection.height();
+    image.values.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+}
+
 double magnification(const CArmView& view, const Projection& projection) {
     return view.source_isocentre_mm > 0 ? projection.source_detector_mm() / view.source_isocentre_mm
                                         : usual_magnification;
@@ -68,23 +73,33 @@ struct Batch {
 }  // namespace
 
 struct Fluoroscope::Impl {
-    Impl(GlDevicePtr device, Workers w) : workers(std::move(w)), buffer(std::move(device)) {}
+    explicit Impl(Workers w) : workers(std::move(w)), raster(workers) {}
 
     Workers workers;
+    std::function<void(std::string_view)> probe;
     const pixel_loops::Set& loops = pixel_loops::best();
-    PathLengthBuffer buffer;
+    PathRaster raster;
     std::unique_ptr<BeamTable> beam;
     double beam_kvp = 0, beam_copper = -1;
 
-    std::vector<std::unique_ptr<PathSurface>> solid_surfaces;  // one a solid
+    // Solids of equal material in equal surroundings: drawn in one pass, as one surface.
+    struct Group {
+        std::string material, surrounding;
+        bool moving = false;
+        std::vector<std::size_t> solids, first_vertex;  // which of the frame's, and where theirs begin
+        std::vector<Triangle> triangles;
+        std::vector<Vec3> vertices;  // mm, world
+    };
+    std::vector<Group> groups;
+    std::size_t solid_count = 0;
     std::uint64_t solids_revision = 0, lumen_revision = 0;
     bool solids_known = false, lumen_known = false;
-    PathRaster raster;  // of the lumen and of the wall's outer surface
 
     // The context of the present view.
     ViewKey context, view;
-    std::vector<BinValues> transmission;  // a pixel: weight * exp(-E) of each bin, geometry factor included
-    ImageF context_intensity, scatter, coarse_log;
+    std::vector<BinValues> transmission;       // a pixel: weight * exp(-E) of each bin, geometry factor included
+    std::vector<PathLengths> context_lengths;  // one a group of solids that stand still
+    ImageF geometry, context_intensity, scatter, coarse_log;
     double reference = 1, coarse_mean = 0, photons_of_kerma = 1;
     std::size_t context_bad = 0, bad = 0;
 
@@ -96,13 +111,13 @@ struct Fluoroscope::Impl {
     };
 
     // One frame.
-    PathLengths lengths;
     DeviceLengths devices;
     std::vector<ChordPiece> pieces;
     std::vector<BinValues> device_mu;
     std::vector<Part> parts;  // kept for their memory; the first part_count are the frame's
     std::size_t part_count = 0;
     ImageF intensity, signal, history, log_image;
+    GaussianBlur focal_blur, detector_blur;
     double history_kerma = 0;
     Subtraction subtraction;
     std::uint64_t references = 0;
@@ -116,35 +131,45 @@ struct Fluoroscope::Impl {
         beam_copper = e.copper_mm;
     }
 
-    void upload_solid(const FrameSolid& solid, PathSurface& surface) {
-        std::vector<Vec3> world;
-        world.reserve(solid.mesh.vertices.size());
-        for (const Vec3& p : solid.mesh.vertices) world.push_back(solid.pose.to_world(p));
-        buffer.set_vertices(surface, world);
-    }
-
-    void upload_solids(const FrameDescription& f) {
-        if (solids_known && solids_revision == f.solids_revision && solid_surfaces.size() == f.solids.size()) return;
-        solid_surfaces.clear();
-        for (const FrameSolid& solid : f.solids) {
+    void group_solids(const FrameDescription& f) {
+        if (solids_known && solids_revision == f.solids_revision && solid_count == f.solids.size()) return;
+        std::map<std::tuple<std::string, std::string, bool>, Group> known;
+        for (std::size_t i = 0; i < f.solids.size(); ++i) {
+            const FrameSolid& solid = f.solids[i];
             require_closed(solid.mesh, "solid of " + solid.material);
-            solid_surfaces.push_back(buffer.make_surface());
-            buffer.set_triangles(*solid_surfaces.back(), solid.mesh.triangles);
+            if (solid.mesh.empty()) continue;
+            Group& group = known[{solid.material, solid.surrounding, solid.moving}];
+            group.material = solid.material;
+            group.surrounding = solid.surrounding;
+            group.moving = solid.moving;
+            group.solids.push_back(i);
+            group.first_vertex.push_back(group.vertices.size());
+            const Triangle shift = Triangle::Constant(static_cast<Index>(group.vertices.size()));
+            for (const Triangle& t : solid.mesh.triangles) group.triangles.emplace_back(t + shift);
+            group.vertices.resize(group.vertices.size() + solid.mesh.vertices.size());
         }
+        groups.clear();
+        for (auto& [media, group] : known) groups.push_back(std::move(group));
         solids_revision = f.solids_revision;
+        solid_count = f.solids.size();
         solids_known = true;
     }
 
-    // Solids of equal material in equal surroundings share one pass.
-    using Groups = std::map<std::pair<std::string, std::string>, std::vector<const PathSurface*>>;
-    Groups groups_of(const FrameDescription& f, bool moving_ones) {
-        Groups groups;
-        for (std::size_t i = 0; i < f.solids.size(); ++i) {
-            if (f.solids[i].moving != moving_ones || f.solids[i].mesh.empty()) continue;
-            upload_solid(f.solids[i], *solid_surfaces[i]);
-            groups[{f.solids[i].material, f.solids[i].surrounding}].push_back(solid_surfaces[i].get());
-        }
-        return groups;
+    // Its path lengths as the solids stand in this frame.
+    void draw_group(const FrameDescription& f, const Projection& projection, Group& group, PathLengths& out) {
+        workers.for_ranges(group.solids.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                const FrameSolid& solid = f.solids[group.solids[k]];
+                const Mat3 turn = solid.pose.orientation.toRotationMatrix();
+                Vec3* to = group.vertices.data() + group.first_vertex[k];
+                for (const Vec3& p : solid.mesh.vertices) *to++ = turn * p + solid.pose.position;
+            }
+        });
+        raster.draw(projection, group.vertices, group.triangles, {}, out);
+    }
+
+    void begin(std::string_view name) const {
+        if (probe) probe(name);
     }
 
     Part& next_part() {
@@ -165,41 +190,48 @@ struct Fluoroscope::Impl {
 
 void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection& projection) {
     const auto count = static_cast<std::size_t>(projection.width()) * static_cast<std::size_t>(projection.height());
-    std::vector<BinValues> exponent(count, BinValues{});
-    context_bad = 0;
-    for (const auto& [media, surfaces] : groups_of(f, false)) {
-        const BinValues mu = difference(*beam, media.first, media.second);
-        buffer.draw(projection, surfaces, lengths);
-        context_bad += lengths.bad_pixels;
-        workers.for_ranges(count, 8192, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const float length = lengths.length_mm.values[i];
-                for (std::size_t k = 0; k < energy_bins; ++k) exponent[i][k] += mu[k] * length;
-            }
-        });
-    }
     const int width = projection.width();
-    transmission.resize(count);
-    context_intensity = ImageF(width, projection.height());
     const auto columns = static_cast<std::size_t>(width);
+    context_bad = 0;
+    std::vector<BinValues> mu;
+    std::vector<const float*> amounts;
+    std::size_t passes = 0;
+    for (Group& group : groups) {
+        if (group.moving) continue;
+        if (passes == context_lengths.size()) context_lengths.emplace_back();
+        PathLengths& lengths = context_lengths[passes++];
+        draw_group(f, projection, group, lengths);
+        context_bad += lengths.bad_pixels;
+        mu.push_back(difference(*beam, group.material, group.surrounding));
+        amounts.push_back(lengths.length_mm.values.data());
+    }
+    std::vector<pixel_loops::Absorber> absorbers;
+    for (std::size_t p = 0; p < passes; ++p) absorbers.push_back({amounts[p], mu[p].data()});
+    transmission.resize(count);
+    resize(context_intensity, projection);
+    resize(geometry, projection);
+    std::vector<float> blades(columns);  // what they let through in each column
+    for (int x = 0; x < width; ++x)
+        blades[static_cast<std::size_t>(x)] = is_open(x + 0.5, width, f.view.open_width) ? 1.0F : blade_transmission;
+    const double sid = projection.source_detector_mm();
     workers.for_ranges(count / columns, 16, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin * columns; i < end * columns; ++i) {
-            // Inverse square and obliquity together: cos^3 of the angle to the detector's normal.
-            const std::size_t row = i / columns;
-            const Vec3 hit =
-                projection.to_detector(static_cast<double>(i - row * columns) + 0.5, static_cast<double>(row) + 0.5);
-            const double cosine = projection.source_detector_mm() / std::sqrt(hit.squaredNorm());
-            auto geometry = static_cast<float>(cosine * cosine * cosine);
-            const bool lit = is_open(static_cast<double>(i - row * columns) + 0.5, width, f.view.open_width) &&
-                             is_open(static_cast<double>(row) + 0.5, projection.height(), f.view.open_height);
-            if (!lit) geometry *= blade_transmission;
-            float sum = 0;
-            for (std::size_t k = 0; k < energy_bins; ++k) {
-                transmission[i][k] = geometry * beam->weights()[k] * fast_exp(-exponent[i][k]);
-                sum += transmission[i][k];
+        for (std::size_t y = begin; y < end; ++y) {
+            const double row = static_cast<double>(y) + 0.5;
+            const bool row_lit = is_open(row, projection.height(), f.view.open_height);
+            // Inverse square and obliquity together: cos^3 of the angle to the detector's normal.  Along a row the
+            // squared way from the source to the pixel is a + (b + c x) x.
+            const Vec3 start = projection.to_detector(0.5, row), across = projection.to_detector(1.5, row) - start;
+            const double a = start.squaredNorm(), b = 2.0 * start.dot(across), c = across.squaredNorm();
+            float* g = geometry.values.data() + y * columns;
+            for (int x = 0; x < width; ++x) {
+                const double cosine = sid / std::sqrt(a + (b + c * x) * x);
+                g[x] = static_cast<float>(cosine * cosine * cosine);
             }
-            context_intensity.values[i] = sum;
+            for (std::size_t x = 0; x < columns; ++x) g[x] *= row_lit ? blades[x] : blade_transmission;
         }
+        loops.pass_context(absorbers.data(), absorbers.size(), beam->weights().data(), geometry.values.data(),
+                           begin * columns, end * columns, transmission.data()->data(),
+                           context_intensity.values.data());
     });
     // The measuring field stays within what the collimator leaves open.
     const double side = std::clamp(f.exposure.measuring_field, 0.05, 1.0);
@@ -220,39 +252,48 @@ void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection
     const double lit_mm = projection.pixel_mm() * width * std::sqrt(f.view.open_width * f.view.open_height) /
                           magnification(f.view, projection);
     const double share = f.exposure.scatter_to_primary.value_or(scatter_to_primary(water_mm, lit_mm));
-    scatter = wide_blur(context_intensity, scatter_sigma_mm / projection.pixel_mm());
+    scatter = wide_blur(context_intensity, scatter_sigma_mm / projection.pixel_mm(), workers);
     for (float& s : scatter.values) s *= static_cast<float>(share);
 
     // The measuring field holds the detector's kerma; a coarse picture of the logarithm evens out lung and spine.
-    sum = 0;
     ImageF logs(width, projection.height());
-    for (int y = 0; y < projection.height(); ++y) {
-        for (int x = 0; x < width; ++x) {
-            const std::size_t i = logs.offset(x, y);
-            const float total = std::max(1e-12F, context_intensity.values[i] + scatter.values[i]);
-            logs.values[i] = fast_log(total);
-            if (inside(x, y)) {
-                sum += total;
-                sum_of_logs += logs.values[i];
+    std::vector<std::pair<double, double>> row_sums(static_cast<std::size_t>(projection.height()));
+    workers.for_ranges(row_sums.size(), 16, [&](std::size_t begin, std::size_t end) {
+        for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+            auto& [of_row, logs_of_row] = row_sums[static_cast<std::size_t>(y)];
+            for (int x = 0; x < width; ++x) {
+                const std::size_t i = logs.offset(x, y);
+                const float total = std::max(1e-12F, context_intensity.values[i] + scatter.values[i]);
+                logs.values[i] = fast_log(total);
+                if (!inside(x, y)) continue;
+                of_row += total;
+                logs_of_row += logs.values[i];
             }
         }
+    });
+    sum = 0;
+    for (const auto& [of_row, logs_of_row] : row_sums) {
+        sum += of_row;
+        sum_of_logs += logs_of_row;
     }
     reference = sum / static_cast<double>(pixels);
     coarse_mean = sum_of_logs / static_cast<double>(pixels);
     // What the blades shade must not darken its surroundings: it counts as the field's mean.
-    for (int y = 0; y < projection.height(); ++y)
-        for (int x = 0; x < width; ++x)
-            if (!is_open(x + 0.5, width, f.view.open_width) ||
-                !is_open(y + 0.5, projection.height(), f.view.open_height))
-                logs.values[logs.offset(x, y)] = static_cast<float>(coarse_mean);
-    coarse_log = wide_blur(logs, harmonisation_sigma_mm / projection.pixel_mm());
+    if (f.view.open_width < 1 || f.view.open_height < 1)
+        for (int y = 0; y < projection.height(); ++y)
+            for (int x = 0; x < width; ++x)
+                if (!is_open(x + 0.5, width, f.view.open_width) ||
+                    !is_open(y + 0.5, projection.height(), f.view.open_height))
+                    logs.values[logs.offset(x, y)] = static_cast<float>(coarse_mean);
+    coarse_log = wide_blur(logs, harmonisation_sigma_mm / projection.pixel_mm(), workers);
 }
 
 void Fluoroscope::Impl::draw_moving(const FrameDescription& f, const Projection& projection) {
-    for (const auto& [media, surfaces] : groups_of(f, true)) {
+    for (Group& group : groups) {
+        if (!group.moving) continue;
         Part& part = next_part();
-        buffer.draw(projection, surfaces, part.lengths);
-        part.mu = difference(*beam, media.first, media.second);
+        draw_group(f, projection, group, part.lengths);
+        part.mu = difference(*beam, group.material, group.surrounding);
         bad += part.lengths.bad_pixels;
     }
 }
@@ -366,13 +407,13 @@ void Fluoroscope::Impl::detect(const FrameDescription& f, const Projection& proj
     photons_of_kerma = e.detector_kerma_ngy * beam->photons_per_mm2_ngy() * area;
     signal = intensity;
     const double magnified = (magnification(f.view, projection) - 1) * e.focal_spot_mm;
-    blur(signal, 0.29 * magnified / projection.pixel_mm(), workers);  // 0.29 = sigma of a unit box
+    focal_blur.apply(signal, 0.29 * magnified / projection.pixel_mm(), workers);  // 0.29 = sigma of a unit box
     const auto gain = static_cast<float>(photons);
     workers.for_ranges(signal.values.size(), 16384, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) signal.values[i] *= gain;
     });
     add_quantum_noise(signal, f.seed, f.frame_index, workers);
-    blur(signal, e.detector.blur_sigma_mm / projection.pixel_mm(), workers);
+    detector_blur.apply(signal, e.detector.blur_sigma_mm / projection.pixel_mm(), workers);
     distort(signal, e.detector, projection.pixel_mm(), workers);
     add_electronic_noise(signal, e.detector.electronic_noise_photons, f.seed, f.frame_index, workers);
     // A picture of a subtracted series stands for itself, and one of another dose has another number of quanta.
@@ -426,8 +467,7 @@ void Fluoroscope::Impl::display(const FrameDescription& f) {
     blacken_shaded(f.view, columns, grey);
 }
 
-Fluoroscope::Fluoroscope(std::shared_ptr<GlDevice> device, Workers workers)
-    : impl_(std::make_unique<Impl>(std::move(device), std::move(workers))) {}
+Fluoroscope::Fluoroscope(Workers workers) : impl_(std::make_unique<Impl>(std::move(workers))) {}
 Fluoroscope::~Fluoroscope() = default;
 
 const std::vector<std::uint8_t>& Fluoroscope::draw(const FrameDescription& frame, int width, int height) {
@@ -442,28 +482,38 @@ const std::vector<std::uint8_t>& Fluoroscope::draw(const FrameDescription& frame
         return self.grey;
     }
     const Projection projection(frame.view, width, height);
-    require_before_source(frame, projection);
+    self.begin("checks");
+    ViewKey context = context_key(frame, width, height);
+    const bool new_context = !(context == self.context);
+    require_before_source(frame, projection, new_context);
     self.use_beam(frame.exposure);
-    self.upload_solids(frame);
+    self.group_solids(frame);
     ViewKey view = view_key(frame, width, height);
     if (!(view == self.view)) {
         self.history = {};
         self.subtraction.forget();
     }
     self.view = std::move(view);
-    ViewKey context = context_key(frame, width, height);
-    if (!(context == self.context)) {
+    if (new_context) {
+        self.begin("context");
         self.make_context(frame, projection);
         self.context = std::move(context);
     }
     self.bad = self.context_bad;
     self.part_count = 0;
+    self.begin("moving solids");
     self.draw_moving(frame, projection);
+    self.begin("lumen");
     self.draw_lumen(frame, projection);
+    self.begin("devices");
     self.draw_all_devices(frame, projection);
+    self.begin("beam");
     self.combine();
+    self.begin("detector");
     self.detect(frame, projection);
+    self.begin("display");
     self.display(frame);
+    self.begin("");
     return self.grey;
 }
 
@@ -487,6 +537,9 @@ double Fluoroscope::wanted_photons() const {
 }
 std::size_t Fluoroscope::bad_pixels() const {
     return impl_->bad;
+}
+void Fluoroscope::set_probe(std::function<void(std::string_view)> begin) {
+    impl_->probe = std::move(begin);
 }
 void Fluoroscope::reset() {
     impl_->history = {};

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "core/parallel.h"
@@ -11,13 +13,11 @@
 
 namespace cathlab {
 
-class GlDevice;
-
 /// State between frames: the cached context (torso) of the present view, and the temporal filter's memory, which
 /// restarts when the C-arm moves.  The picture is a function of the descriptions drawn since then.
 class Fluoroscope {
 public:
-    Fluoroscope(std::shared_ptr<GlDevice> device, Workers workers);
+    explicit Fluoroscope(Workers workers);
     ~Fluoroscope();
 
     /// Grey, one byte a pixel, rows from the top, devices dark on light.  Throws UserError on an impossible geometry or
@@ -38,6 +38,8 @@ public:
     double wanted_photons() const;
     /// Rays of the last frame whose entries and exits do not match (open surfaces); must be 0.
     std::size_t bad_pixels() const;
+    /// Called in draw() as each part of the chain begins, "" as the last ends, for measuring.
+    void set_probe(std::function<void(std::string_view part)> begin);
     /// Brings the next frame to a fresh start (a new run).
     void reset();
 

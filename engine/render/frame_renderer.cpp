@@ -36,13 +36,15 @@ FrameLayout layout_of(const FrameDescription& frame) {
 }
 
 struct FrameRenderer::Impl {
-    Impl(std::unique_ptr<GlTarget> target, const Workers& workers)
+    Impl(std::unique_ptr<GlTarget> target, const Workers& the_workers)
         : device(std::make_shared<GlDevice>(std::move(target))),
-          fluoroscope(device, workers),
+          workers(the_workers),
+          fluoroscope(workers),
           inner_view(device),
           outer_view(device),
           overlay(device) {}
     GlDevicePtr device;
+    Workers workers;
     Fluoroscope fluoroscope;
     InnerView inner_view;
     OuterView outer_view;
@@ -88,11 +90,13 @@ void FrameRenderer::render(const FrameDescription& frame, Image8& out) {
         impl_->begin("fluoroscopy");
         const FrameRect& r = layout.fluoroscopy;
         const std::vector<std::uint8_t>& grey = impl_->fluoroscope.draw(frame, r.width, r.height);
-        for (int y = 0; y < r.height; ++y) {
-            std::uint8_t* row = out.rgb.data() + out.offset(r.x, r.y + y);
-            const std::uint8_t* from = grey.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(r.width);
-            for (int x = 0; x < r.width; ++x, row += 3) row[0] = row[1] = row[2] = from[x];
-        }
+        impl_->workers.for_ranges(static_cast<std::size_t>(r.height), 32, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t y = begin; y < end; ++y) {
+                std::uint8_t* row = out.rgb.data() + out.offset(r.x, r.y + static_cast<int>(y));
+                const std::uint8_t* from = grey.data() + y * static_cast<std::size_t>(r.width);
+                for (int x = 0; x < r.width; ++x, row += 3) row[0] = row[1] = row[2] = from[x];
+            }
+        });
     }
     if (layout.inner_view.width > 0) {
         impl_->begin("inner view");
@@ -138,6 +142,9 @@ std::string FrameRenderer::description() const {
 }
 void FrameRenderer::set_probe(std::function<void(std::string_view)> begin) {
     impl_->probe = std::move(begin);
+}
+void FrameRenderer::set_fluoroscopy_probe(std::function<void(std::string_view)> begin) {
+    impl_->fluoroscope.set_probe(std::move(begin));
 }
 
 }  // namespace cathlab

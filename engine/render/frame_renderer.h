@@ -59,6 +59,8 @@ public:
     /// Called in render() as each part begins ("fluoroscopy", "inner view", "outer view",
     /// "overlay"), for measuring.
     void set_probe(std::function<void(std::string_view part)> begin);
+    /// The same for the parts of the fluoroscopy's chain.
+    void set_fluoroscopy_probe(std::function<void(std::string_view part)> begin);
 
 private:
     struct Impl;

@@ -43,7 +43,7 @@ Vec2 Pincushion::pinhole(const Vec2& shown) const {
 
 void distort(ImageF& image, const FrameDetector& detector, double pixel_mm, const Workers& workers) {
     if (detector.glare > 0.0) {
-        const ImageF veil = wide_blur(image, detector.glare_sigma_mm / pixel_mm);
+        const ImageF veil = wide_blur(image, detector.glare_sigma_mm / pixel_mm, workers);
         const auto share = static_cast<float>(detector.glare);
         for (std::size_t i = 0; i < image.values.size(); ++i)
             image.values[i] += share * (veil.values[i] - image.values[i]);

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double farthest_px = 1 << 20;  // of a corner from the picture
 constexpr double nearest_mm = 1e-3;      // of a corner to the source
+constexpr int band_rows = 16;            // drawn by one thread: its sums stay in the cache
+constexpr std::size_t chunk = 2048;      // triangles that one thread sorts into bands
+constexpr std::size_t long_row = 12;     // pixels from which the loop of many at a time is worth its call
 
 // The least whole number that is not below v, at most `limit`, at least 0.
 int ceiling(double v, int limit) {
@@ -46,21 +49,52 @@ void PathRaster::project(const Projection& projection, std::span<const Vec3> ver
 
     const double per_pixel_x = 1.0 / pixel_x, per_pixel_y = 1.0 / pixel_y;
     corners_.resize(vertices.size());
-    for (std::size_t k = 0; k < vertices.size(); ++k) {
-        const Vec3 p = vertices[k] - projection.source();
-        Corner& c = corners_[k];
-        c.x = p.dot(right);
-        c.y = p.dot(down);
-        c.z = p.dot(projection.normal());
-        CATHLAB_CHECK(c.z > nearest_mm, "a surface reaches behind the X-ray source");
-        c.inverse = 1.0 / c.z;
-        c.column = std::clamp((sid * c.x * c.inverse - x0) * per_pixel_x, -farthest_px, farthest_px);
-        c.row = std::clamp((sid * c.y * c.inverse - y0) * per_pixel_y, -farthest_px, farthest_px);
+    workers_.for_ranges(vertices.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const Vec3 p = vertices[k] - projection.source();
+            Corner& c = corners_[k];
+            c.x = p.dot(right);
+            c.y = p.dot(down);
+            c.z = p.dot(projection.normal());
+            CATHLAB_CHECK(c.z > nearest_mm, "a surface reaches behind the X-ray source");
+            c.inverse = 1.0 / c.z;
+            c.column = std::clamp((sid * c.x * c.inverse - x0) * per_pixel_x, -farthest_px, farthest_px);
+            c.row = std::clamp((sid * c.y * c.inverse - y0) * per_pixel_y, -farthest_px, farthest_px);
+        }
+    });
+}
+
+void PathRaster::sort_into_bands(std::span<const Triangle> triangles) {
+    bands_.resize(static_cast<std::size_t>((height_ + band_rows - 1) / band_rows));
+    for (std::size_t i = 0; i < bands_.size(); ++i) {
+        bands_[i].begin = static_cast<int>(i) * band_rows;
+        bands_[i].end = std::min(height_, bands_[i].begin + band_rows);
     }
+    chunks_ = (triangles.size() + chunk - 1) / chunk;
+    touching_.resize(std::max(touching_.size(), chunks_ * bands_.size()));
+    workers_.for_ranges(chunks_, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            std::vector<std::uint32_t>* lists = touching_.data() + k * bands_.size();
+            for (std::size_t i = 0; i < bands_.size(); ++i) lists[i].clear();
+            for (std::size_t n = k * chunk; n < std::min(triangles.size(), (k + 1) * chunk); ++n) {
+                const Triangle& t = triangles[n];
+                const Corner& a = corners_[static_cast<std::size_t>(t[0])];
+                const Corner& b = corners_[static_cast<std::size_t>(t[1])];
+                const Corner& c = corners_[static_cast<std::size_t>(t[2])];
+                const int top = ceiling(std::min({a.row, b.row, c.row}), height_);
+                const int bottom = ceiling(std::max({a.row, b.row, c.row}), height_);
+                if (top == bottom) continue;  // between two rows' centres, or outside
+                if (std::max({a.column, b.column, c.column}) <= -1.0) continue;
+                if (std::min({a.column, b.column, c.column}) >= width_) continue;
+                for (int i = top / band_rows; i <= (bottom - 1) / band_rows; ++i)
+                    lists[i].push_back(static_cast<std::uint32_t>(n));
+            }
+        }
+    });
 }
 
 template <bool with_values>
-void PathRaster::add(const Triangle& t, std::span<const double> values, std::span<const double> widths) {
+void PathRaster::add(const Triangle& t, const Job& job, Band& band) const {
     const Corner& a = corners_[static_cast<std::size_t>(t[0])];
     const Corner& b = corners_[static_cast<std::size_t>(t[1])];
     const Corner& c = corners_[static_cast<std::size_t>(t[2])];
@@ -75,10 +109,8 @@ void PathRaster::add(const Triangle& t, std::span<const double> values, std::spa
     order(upper, middle);
     order(middle, lower);
     order(upper, middle);
-    const int top = ceiling(upper->row, height_), waist = ceiling(middle->row, height_);
-    const int bottom = ceiling(lower->row, height_);
-    if (top == bottom) return;  // between two rows' centres, or outside
-    if (std::max({a.column, b.column, c.column}) <= -1.0 || std::min({a.column, b.column, c.column}) >= width_) return;
+    const int top = std::max(band.begin, ceiling(upper->row, height_)), waist = ceiling(middle->row, height_);
+    const int bottom = std::min(band.end, ceiling(lower->row, height_));
 
     // The plane n . p = offset; on the ray p = depth * (slope_x, slope_y, 1).
     const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
@@ -96,11 +128,12 @@ void PathRaster::add(const Triangle& t, std::span<const double> values, std::spa
     float width = 1.0F;
     double value_0 = 0.0, gx = 0.0, gy = 0.0, gz = 0.0;  // value = value_0 + depth * (g . ray)
     if constexpr (with_values) {
-        if (!widths.empty()) {
+        if (!job.widths.empty()) {
             double sum = 0.0;
-            for (int k = 0; k < 3; ++k) sum += widths[static_cast<std::size_t>(t[k])];
+            for (int k = 0; k < 3; ++k) sum += job.widths[static_cast<std::size_t>(t[k])];
             width = static_cast<float>(sum / 3.0);
         }
+        const std::span<const double> values = job.values;
         const double va = values[static_cast<std::size_t>(t[0])];
         const double du = values[static_cast<std::size_t>(t[1])] - va, dv = values[static_cast<std::size_t>(t[2])] - va;
         // The gradient within the plane, from its two edges u and v.
@@ -124,53 +157,108 @@ void PathRaster::add(const Triangle& t, std::span<const double> values, std::spa
         float sign = turned ? -1.0F : 1.0F;
         if (begin < end) sign = -sign;
         if (begin > end) std::swap(begin, end);
-        const std::size_t start = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
-        for (auto x = static_cast<std::size_t>(begin); x < static_cast<std::size_t>(end); ++x) {
+        const std::size_t start = static_cast<std::size_t>(y - band.begin) * static_cast<std::size_t>(width_);
+        const auto from = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end) - from;
+        if (!with_values && count >= long_row) {
+            loops_->add_depths(slope_x_.data() + from, count, {nx, row, least, most, reference_, sign},
+                               band.depth.data() + start + from, band.exits.data() + start + from);
+            continue;
+        }
+        for (std::size_t x = from; x < from + count; ++x) {
             const double slope_x = slope_x_[x];
             const double depth = 1.0 / std::min(most, std::max(least, nx * slope_x + row));
             const auto d = static_cast<float>(depth - reference_);
-            Sum& sum = sums_[start + x];
-            sum.depth += sign * d;
-            sum.exits += sign;
+            band.depth[start + x] += sign * d;
+            band.exits[start + x] += sign;
             if constexpr (with_values) {
                 const auto v = static_cast<float>(value_0 + depth * (gx * slope_x + gy * slope_y + gz));
-                met_.emplace_back(static_cast<std::uint32_t>(start + x), Crossing{d, v, width, sign});
+                band.met.emplace_back(static_cast<std::uint32_t>(start + x), Crossing{d, v, width, sign});
             }
         }
     }
 }
 
 // By pixel in two passes, as many crossings are met as the surface has layers; then by depth within each.
-void PathRaster::sort_crossings() {
-    first_.assign(sums_.size() + 1, 0);
-    for (const auto& [pixel, crossing] : met_) ++first_[pixel + 1];
-    for (std::size_t i = 0; i < sums_.size(); ++i) first_[i + 1] += first_[i];
-    crossings_.resize(met_.size());
-    for (const auto& [pixel, crossing] : met_) {  // first_ runs along to each pixel's end
-        std::uint32_t& end = first_[pixel];
-        crossings_[end++] = crossing;
+void PathRaster::Band::sort_crossings() {
+    const std::size_t pixels = depth.size();
+    first.assign(pixels + 1, 0);
+    for (const auto& [pixel, crossing] : met) ++first[pixel + 1];
+    for (std::size_t i = 0; i < pixels; ++i) first[i + 1] += first[i];
+    crossings.resize(met.size());
+    for (const auto& [pixel, crossing] : met) {  // first runs along to each pixel's end
+        std::uint32_t& end = first[pixel];
+        crossings[end++] = crossing;
     }
     // Each now says where the next pixel begins: back by one.
-    for (std::size_t i = sums_.size(); i > 0; --i) first_[i] = first_[i - 1];
-    first_[0] = 0;
-    for (std::size_t i = 0; i < sums_.size(); ++i)
-        std::sort(crossings_.begin() + first_[i], crossings_.begin() + first_[i + 1],
-                  [](const Crossing& a, const Crossing& b) {
-                      return a.depth != b.depth ? a.depth < b.depth : a.exit < b.exit;
-                  });
+    for (std::size_t i = pixels; i > 0; --i) first[i] = first[i - 1];
+    first[0] = 0;
+    // A handful each: by insertion.
+    const auto before = [](const Crossing& a, const Crossing& b) {
+        return a.depth != b.depth ? a.depth < b.depth : a.exit < b.exit;
+    };
+    for (std::size_t i = 0; i < pixels; ++i) {
+        for (std::uint32_t k = first[i] + 1; k < first[i + 1]; ++k) {
+            const Crossing moved = crossings[k];
+            std::uint32_t to = k;
+            for (; to > first[i] && before(moved, crossings[to - 1]); --to) crossings[to] = crossings[to - 1];
+            crossings[to] = moved;
+        }
+    }
 }
 
 // Along the depth; on a closed surface as many exits as entries.
-float PathRaster::integral(std::size_t pixel) const {
+float PathRaster::Band::integral(std::size_t pixel) const {
     float sum = 0.0F, layers = 0.0F;
-    for (std::size_t k = first_[pixel]; k + 1 < first_[pixel + 1]; ++k) {
-        const Crossing &here = crossings_[k], &next = crossings_[k + 1];
+    for (std::size_t k = first[pixel]; k + 1 < first[pixel + 1]; ++k) {
+        const Crossing &here = crossings[k], &next = crossings[k + 1];
         layers -= here.exit;
         if (layers > 0.0F)
             sum += layers * (here.width * here.value + next.width * next.value) / (here.width + next.width) *
                    (next.depth - here.depth);
     }
     return std::max(0.0F, sum);
+}
+
+void PathRaster::draw_band(std::size_t index, const Job& job, PathLengths& out) {
+    Band& band = bands_[index];
+    const auto width = static_cast<std::size_t>(width_);
+    const std::size_t pixels = width * static_cast<std::size_t>(band.end - band.begin);
+    const std::size_t offset = width * static_cast<std::size_t>(band.begin);
+    band.bad = 0;
+    bool touched = false;
+    for (std::size_t k = 0; k < chunks_; ++k) {
+        const std::vector<std::uint32_t>& touching = touching_[k * bands_.size() + index];
+        if (touching.empty()) continue;
+        if (!touched) {
+            band.depth.assign(pixels, 0.0F);
+            band.exits.assign(pixels, 0.0F);
+            band.met.clear();
+            touched = true;
+        }
+        if (job.with_values)
+            for (const std::uint32_t n : touching) add<true>(job.triangles[n], job, band);
+        else
+            for (const std::uint32_t n : touching) add<false>(job.triangles[n], job, band);
+    }
+    if (!touched) {
+        std::fill_n(out.length_mm.values.data() + offset, pixels, 0.0F);
+        return;
+    }
+    if (job.with_values) band.sort_crossings();
+    for (std::size_t n = 0; n < pixels; ++n) {
+        const bool bad = band.exits[n] != 0.0F;
+        band.bad += bad ? 1 : 0;
+        float length = 0.0F;
+        if (band.depth[n] != 0.0F && !bad) {
+            // From depth along the normal to distance along the ray.
+            const double sx = slope_x_[n % width], sy = slope_y_[static_cast<std::size_t>(band.begin) + n / width];
+            const double slant = std::sqrt(1.0 + sx * sx + sy * sy);
+            length = static_cast<float>(band.depth[n] * slant);
+            if (job.with_values && length > 1e-3F)
+                out.contrast_mm_mg_ml.values[offset + n] = static_cast<float>(slant) * band.integral(n);
+        }
+        out.length_mm.values[offset + n] = length;
+    }
 }
 
 void PathRaster::draw(const Projection& projection, std::span<const Vec3> vertices, std::span<const Triangle> triangles,
@@ -184,36 +272,17 @@ void PathRaster::draw(const Projection& projection, std::span<const Vec3> vertic
     reference_ = 0.65 * projection.source_detector_mm();
     const std::size_t count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     project(projection, vertices);
-    sums_.assign(count, Sum{});
-    if (with_values) {
-        met_.clear();
-        for (const Triangle& t : triangles) add<true>(t, values, widths);
-        sort_crossings();
-    } else {
-        for (const Triangle& t : triangles) add<false>(t, values, widths);
-    }
-
-    out.bad_pixels = 0;
+    sort_into_bands(triangles);
     out.length_mm.width = out.contrast_mm_mg_ml.width = width_;
     out.length_mm.height = out.contrast_mm_mg_ml.height = height_;
     out.length_mm.values.resize(count);
     out.contrast_mm_mg_ml.values.assign(with_values ? count : 0, 0.0F);
-    for (std::size_t y = 0, n = 0; y < slope_y_.size(); ++y) {
-        for (std::size_t x = 0; x < slope_x_.size(); ++x, ++n) {
-            const Sum& sum = sums_[n];
-            const bool bad = sum.exits != 0.0F;
-            out.bad_pixels += bad ? 1 : 0;
-            float length = 0.0F;
-            if (sum.depth != 0.0F && !bad) {
-                // From depth along the normal to distance along the ray.
-                const double slant = std::sqrt(1.0 + slope_x_[x] * slope_x_[x] + slope_y_[y] * slope_y_[y]);
-                length = static_cast<float>(sum.depth * slant);
-                if (with_values && length > 1e-3F)
-                    out.contrast_mm_mg_ml.values[n] = static_cast<float>(slant) * integral(n);
-            }
-            out.length_mm.values[n] = length;
-        }
-    }
+    const Job job{triangles, values, widths, with_values};
+    workers_.for_ranges(bands_.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) draw_band(i, job, out);
+    });
+    out.bad_pixels = 0;
+    for (const Band& band : bands_) out.bad_pixels += band.bad;
 }
 
 }  // namespace cathlab

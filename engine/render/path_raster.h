@@ -1,5 +1,6 @@
-// The L-buffer of one closed surface of very many small triangles that move in every frame: the lumen.  What GL's
-// software rasteriser spends on setting up a triangle of a few pixels is several times what the triangle itself costs.
+// The L-buffer on the processor, on any number of threads: what GL's software rasteriser spends on setting up a
+// triangle of a few pixels (the lumen has thousands, and they move in every frame) is several times what the triangle
+// costs.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,9 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "core/parallel.h"
 #include "render/path_lengths.h"
+#include "render/pixel_loops.h"
 
 namespace cathlab {
 
@@ -17,8 +20,12 @@ namespace cathlab {
 /// plane, exactly: 1 / depth is linear over the picture.  In each row an edge begins at one pixel, the same for both of
 /// its triangles, and counts with the direction in which each runs through it: on a closed surface these cancel, so
 /// that every ray has as many entries as exits whatever is rounded.
+/// Bands of rows are drawn beside one another, each with its triangles in their order: the sums have the same bits on
+/// any number of threads.
 class PathRaster {
 public:
+    explicit PathRaster(Workers workers = Workers()) : workers_(std::move(workers)) {}
+
     /// vertices: mm, world, and wholly on the detector's side of the source; values: one a vertex, >= 0, to be
     /// integrated along the ray (between each entry and the exit after it, so that of two vessels behind one another
     /// each has its own), or empty; widths: one a vertex, > 0, or empty for alike.  Over a way s between an entry and
@@ -35,26 +42,42 @@ private:
         double inverse;      // 1 / z
         double column, row;  // on the picture, whole at the pixels' centres
     };
-    struct Sum {
-        float depth = 0.0F;  // leaving - entering, along the detector's normal, less a reference
-        float exits = 0.0F;  // leaving - entering
-    };
     struct Crossing {
         float depth, value, width, exit;  // exit: 1 leaving, -1 entering
     };
+    // What a band of rows needs while it is drawn; kept for its memory.
+    struct Band {
+        int begin = 0, end = 0;    // rows
+        std::vector<float> depth;  // a pixel: leaving - entering, along the detector's normal, less a reference
+        std::vector<float> exits;  // a pixel: leaving - entering
+        std::vector<std::pair<std::uint32_t, Crossing>> met;  // pixel and crossing, as the triangles come
+        std::vector<Crossing> crossings;                      // of pixel i: first[i] to first[i + 1], by depth
+        std::vector<std::uint32_t> first;
+        std::size_t bad = 0;
 
-    template <bool with_values>
-    void add(const Triangle& t, std::span<const double> values, std::span<const double> widths);
+        void sort_crossings();
+        float integral(std::size_t pixel) const;
+    };
+    // What draw() was called with.
+    struct Job {
+        std::span<const Triangle> triangles;
+        std::span<const double> values, widths;
+        bool with_values = false;
+    };
+
     void project(const Projection& projection, std::span<const Vec3> vertices);
-    void sort_crossings();
-    float integral(std::size_t pixel) const;
+    void sort_into_bands(std::span<const Triangle> triangles);
+    template <bool with_values>
+    void add(const Triangle& t, const Job& job, Band& band) const;
+    void draw_band(std::size_t index, const Job& job, PathLengths& out);
 
+    Workers workers_;
+    const pixel_loops::Set* loops_ = &pixel_loops::best();
     std::vector<Corner> corners_;
     std::vector<double> slope_x_, slope_y_;  // of the ray through a column's (row's) centre: mm a mm of depth
-    std::vector<Sum> sums_;
-    std::vector<std::pair<std::uint32_t, Crossing>> met_;  // pixel and crossing, as the triangles come
-    std::vector<Crossing> crossings_;                      // of pixel i: first_[i] to first_[i + 1], by depth
-    std::vector<std::uint32_t> first_;
+    std::vector<Band> bands_;
+    std::vector<std::vector<std::uint32_t>> touching_;  // [chunk of triangles x bands + band]: which, in their order
+    std::size_t chunks_ = 0;
     double reference_ = 0.0;  // keeps the sums small
     int width_ = 0, height_ = 0;
     bool mirrored_ = false;

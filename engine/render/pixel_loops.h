@@ -15,8 +15,22 @@ struct Absorber {
     const float* mu;  ///< (bins)
 };
 
+/// Where rays of a row meet a plane: 1 / depth = per_slope * slope + at_zero, held within [least, most].
+struct PlaneInRow {
+    double per_slope, at_zero, least, most;
+    double reference;  ///< that is taken off the depth
+    float sign;        ///< 1 leaving, -1 entering
+};
+
 struct Set {
     const char* name;
+    /// depth += sign (1 / (...) - reference), exits += sign, of the pixels whose rays have these slopes.
+    void (*add_depths)(const double* slope, std::size_t count, const PlaneInRow& plane, float* depth, float* exits);
+    /// transmission[bins * i + k] = geometry_i weight_k exp(-sum of mu_k amount_i); out = its sum over the bins.
+    void (*pass_context)(const Absorber* absorbers, std::size_t absorber_count, const float* weights,
+                         const float* geometry, std::size_t begin, std::size_t end, float* transmission, float* out);
+    /// out = sum over k of weights_k rows_k: one pass of a separable blur.
+    void (*weigh)(const float* const* rows, const float* weights, std::size_t taps, std::size_t count, float* out);
     /// transmission * exp(-exponent) in place of each exponent.
     void (*attenuate)(const float* transmission, std::size_t count, float* exponent);
     /// out = sum over bins of transmission[bins * i + k] exp(-sum of mu_k amount_i), plus scatter: Beer-Lambert.  Where

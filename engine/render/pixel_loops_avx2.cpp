@@ -11,7 +11,8 @@ namespace {
 }  // namespace
 
 const Set* avx2() {
-    static const Set set{"AVX2", attenuate, absorb, quantum_noise, electronic_noise, to_log, sharpen};
+    static const Set set{"AVX2", add_depths,    pass_context,     weigh,  attenuate,
+                         absorb, quantum_noise, electronic_noise, to_log, sharpen};
     return __builtin_cpu_supports("avx2") ? &set : nullptr;
 }
 

@@ -9,7 +9,8 @@ namespace {
 }  // namespace
 
 const Set& baseline() {
-    static const Set set{"baseline", attenuate, absorb, quantum_noise, electronic_noise, to_log, sharpen};
+    static const Set set{"baseline", add_depths,    pass_context,     weigh,  attenuate,
+                         absorb,     quantum_noise, electronic_noise, to_log, sharpen};
     return set;
 }
 
