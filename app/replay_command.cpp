@@ -1,5 +1,6 @@
 // cathlab replay: a run again from step 0 with its recorded inputs, compared with what was recorded.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -39,9 +40,12 @@ bool pictured(const ReplayOptions& options) {
            !film.frames.empty() || !options.still.empty();
 }
 
-std::unique_ptr<Film> open_film(const ReplayOptions& options, const SceneSpec& scene, int threads) {
+std::unique_ptr<Film> open_film(const ReplayOptions& options, const SceneSpec& scene, int threads,
+                                int draw_threads = 1) {
     const std::string video = options.film.video == "none" ? "" : options.film.video;
-    return std::make_unique<Film>(scene, film_options(options.film, scene, video, options.out), threads);
+    FilmOptions film = film_options(options.film, scene, video, options.out);
+    film.draw_threads = draw_threads;
+    return std::make_unique<Film>(scene, film, threads);
 }
 
 std::int64_t end_of(const ReplayOptions& options, std::int64_t steps, double dt_s) {
@@ -62,7 +66,10 @@ void render_poses(const ReplayOptions& options, const RunRecord& run, AppContext
     if (wanted.fps > recorded.rate_hz() * (1.0 + 1e-9))
         log::warn(options.folder + ": has poses of " + exact_number(recorded.rate_hz()) +
                   " instants a second; pictures between two show the earlier one (--simulate: their own)");
-    const std::unique_ptr<Film> film = open_film(options, scene, threads.film);
+    // Nothing is stepped: what describing and encoding leave over draws.
+    const int encoding = options.film.video == "none" || options.film.video.empty() ? 0 : 1;
+    const std::unique_ptr<Film> film =
+        open_film(options, scene, threads.film, std::max(1, options.threads - 1 - encoding));
     const std::int64_t end = end_of(options, recorded.steps(), scene.step.dt_s);
     const std::int64_t done = recorded.film(*film, end);
     close_film(options, *film);

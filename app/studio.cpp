@@ -15,7 +15,7 @@ namespace cathlab {
 
 struct Studio::Impl {
     Impl(const FilmOptions& options, bool apart)
-        : renderer(make_gl_target()), probe(options.probe), encode_apart(apart) {
+        : renderer(make_gl_target(), Workers(options.draw_threads)), probe(options.probe), encode_apart(apart) {
         renderer.set_probe(probe);
         if (!options.path.empty())
             writer.emplace(options.path, options.width, options.height, options.fps, options.codec);

@@ -27,6 +27,7 @@ struct FilmOptions {
     std::string codec = {};        ///< of the film, "" = as its name says
     bool frames_as_float = false;  ///< raw floats instead of 16-bit PNG
     ViewChange view = {};
+    int draw_threads = 1;  ///< of a picture; the bytes are the same on any number
 };
 
 /// What a picture is drawn from, and what the machine said when it was taken.

@@ -10,6 +10,7 @@
 #include "core/check.h"
 #include "core/errors.h"
 #include "core/log.h"
+#include "imaging/film_codec.h"
 #include "imaging/libav_encoder.h"
 
 namespace cathlab {
@@ -40,32 +41,6 @@ void require_writable(const std::string& path, const std::string& part) {
         throw UserError("cannot write video '" + path + "': the disk is full (" +
                         std::to_string(space.available >> 10) + " kB are free, " +
                         std::to_string(least_free_bytes >> 20) + " MB are wanted)");
-}
-
-struct NamedCodec {
-    const char* name;
-    FilmCodec codec;
-    const char* extension;
-};
-constexpr NamedCodec named_codecs[] = {
-    {"h264", FilmCodec::h264, ".mp4"}, {"mpeg4", FilmCodec::mpeg4, ".mp4"}, {"ffv1", FilmCodec::lossless, ".avi"}};
-
-void require_codec(const std::string& path, const std::string& name, const std::string& extension) {
-    std::vector<std::string> names, here;
-    const NamedCodec* wanted = nullptr;
-    for (const NamedCodec& known : named_codecs) {
-        names.emplace_back(known.name);
-        if (LibavEncoder::knows(known.codec)) here.emplace_back(known.name);
-        if (name == known.name) wanted = &known;
-    }
-    const std::string start = "cannot write video '" + path + "': ";
-    if (wanted == nullptr)
-        throw UserError(start + "there is no codec '" + name + "'; known are " + comma_list(names) +
-                        did_you_mean(name, names));
-    if (extension != wanted->extension)
-        throw UserError(start + "the codec " + name + " goes into a file " + wanted->extension);
-    if (!LibavEncoder::knows(wanted->codec))
-        throw UserError(start + "this system has no encoder of " + name + "; it has " + comma_list(here));
 }
 
 }  // namespace
@@ -107,19 +82,18 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, double 
         throw UserError("a video with " + std::to_string(fps) +
                         " frames per second cannot be written: allowed is (0, 240]");
     }
-    if (!codec.empty()) require_codec(path, codec, extension);
+    const FilmCodec chosen = choose_codec(path, extension, codec, LibavEncoder::knows);
     impl_->path = path;
     impl_->part = part_name(path);
     impl_->width = width;
     impl_->height = height;
     require_writable(path, impl_->part);
-    if (extension == ".avi") {
-        impl_->open(FilmCodec::lossless, "FFV1", fps);
-    } else if (codec != "mpeg4" && LibavEncoder::knows(FilmCodec::h264)) {
-        impl_->open(FilmCodec::h264, "avc1", fps);
-    } else {
-        if (codec.empty()) log::warn("no H.264 encoder here; '" + path + "' is written as MPEG-4 part 2 (mp4v)");
-        impl_->open(FilmCodec::mpeg4, "mp4v", fps);
+    if (chosen == FilmCodec::mpeg4 && codec.empty())
+        log::warn("no H.264 encoder here; '" + path + "' is written as MPEG-4 part 2 (mp4v)");
+    switch (chosen) {
+        case FilmCodec::lossless: impl_->open(chosen, "FFV1", fps); break;
+        case FilmCodec::h264: impl_->open(chosen, "avc1", fps); break;
+        case FilmCodec::mpeg4: impl_->open(chosen, "mp4v", fps); break;
     }
 }
 

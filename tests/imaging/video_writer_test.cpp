@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <filesystem>
@@ -9,6 +10,8 @@
 #include <memory>
 
 #include "core/errors.h"
+#include "imaging/film_codec.h"
+#include "imaging/film_codec.h"
 
 namespace cathlab {
 namespace {
@@ -140,6 +143,31 @@ TEST_F(Video, ACodecThatIsNotThereIsToldWithThoseThatAre) {
     VideoWriter part2(file("b.mp4"), 128, 64, 15.0, "mpeg4");
     EXPECT_EQ(part2.codec(), "mp4v");
     EXPECT_EQ(VideoWriter(file("c.avi"), 128, 64, 15.0, "ffv1").codec(), "FFV1");
+}
+
+// No machine that builds cathlab lacks an encoder, so the machine is made up.
+TEST(FilmCodec, AKnownCodecWithoutAnEncoderIsToldWithThoseThatHaveOne) {
+    const auto fault = [](const char* extension, const char* name, std::vector<FilmCodec> here) -> std::string {
+        try {
+            choose_codec("a.film", extension, name,
+                         [&](FilmCodec codec) { return std::find(here.begin(), here.end(), codec) != here.end(); });
+        } catch (const UserError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(fault(".mp4", "h264", {FilmCodec::mpeg4, FilmCodec::lossless}),
+              "cannot write video 'a.film': this system has no encoder of h264; it has mpeg4, ffv1");
+    EXPECT_EQ(fault(".avi", "ffv1", {FilmCodec::h264}),
+              "cannot write video 'a.film': this system has no encoder of ffv1; it has h264");
+    EXPECT_EQ(fault(".avi", "", {FilmCodec::h264}),
+              "cannot write video 'a.film': this system has no encoder for .avi; it has h264");
+    EXPECT_NE(fault(".mp4", "", {}).find("it has none that cathlab writes"), std::string::npos);
+    EXPECT_EQ(fault(".mp4", "h264", {FilmCodec::h264}), "");
+    // Without a name another codec of the same file will do.
+    const auto only_part2 = [](FilmCodec codec) { return codec == FilmCodec::mpeg4; };
+    EXPECT_EQ(choose_codec("a.mp4", ".mp4", "", only_part2), FilmCodec::mpeg4);
+    EXPECT_EQ(choose_codec("a.mp4", ".mp4", "", [](FilmCodec) { return true; }), FilmCodec::h264);
 }
 
 TEST_F(Video, OddSizesUnknownEndingsAndMissingFoldersAreRefused) {

@@ -113,6 +113,8 @@ TEST(PixelLoops, EveryInstructionSetGivesTheSameValues) {
     }
     for (std::size_t i = 0; i < transmission.size(); ++i)
         transmission[i] = 0.01F + 0.001F * static_cast<float>(i * 7919 % 131);
+    std::vector<double> slope(count);
+    for (std::size_t i = 0; i < count; ++i) slope[i] = -0.15 + 0.3 * static_cast<double>(i) / count;
     const std::vector<float> mu{0.05F, 0.04F, 0.03F, 0.025F, 0.02F, 0.018F, 0.017F, 0.016F};
     const std::array<pixel_loops::Absorber, 2> absorbers{{{amount.data(), mu.data()}, {more.data(), mu.data()}}};
     const auto run = [&](const pixel_loops::Set& set) {
@@ -125,7 +127,13 @@ TEST(PixelLoops, EveryInstructionSetGivesTheSameValues) {
         std::vector<std::uint8_t> grey(count - 2);
         set.sharpen(logs.data(), zero.data(), zero.data(), 0.1F, 127.0F, 150.0F, count - 2, grey.data());
         set.attenuate(transmission.data(), count, out.data());
-        return std::tuple(out, logs, grey);
+        std::vector<float> depth(count), exits(count), passed(8 * count), context(count), blurred(count - 6);
+        set.add_depths(slope.data(), count, {0.0031, 0.0012, 0.0011, 0.0018, 650.0, -1.0F}, depth.data(), exits.data());
+        set.pass_context(absorbers.data(), 2, mu.data(), amount.data(), 1, count, passed.data(), context.data());
+        const std::array<const float*, 6> taps{amount.data(),     amount.data() + 1, amount.data() + 2,
+                                               amount.data() + 3, more.data() + 4,   more.data() + 5};
+        set.weigh(taps.data(), mu.data(), taps.size(), blurred.size(), blurred.data());
+        return std::tuple(out, logs, grey, depth, exits, passed, context, blurred);
     };
     EXPECT_TRUE(run(plain) == run(*wide));
 }

@@ -214,6 +214,26 @@ TEST(PathRaster, ASurfaceFinerThanThePixelsIsClosedAndKeepsItsVolume) {
     EXPECT_LT(largest, 2e-2);  // at the rim, where the chord rises steeply
 }
 
+TEST(PathRaster, EveryBitIsTheSameOnAnyThreads) {
+    const TriMesh mesh = torus(Vec3(0, 0, 0), 60, 25, 96, 48);
+    std::vector<double> values;
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) values.push_back(static_cast<double>(i % 17));
+    const CArmView v = view(35, 300);
+    for (const bool with_values : {false, true}) {
+        PathLengths alone, several;
+        const std::vector<double> none;
+        PathRaster().draw(Projection(v, 301, 301), mesh.vertices, mesh.triangles, with_values ? values : none, alone);
+        PathRaster raster(Workers(3));
+        for (int again = 0; again < 2; ++again) {  // what is kept from picture to picture leaves no trace
+            raster.draw(Projection(v, 301, 301), mesh.vertices, mesh.triangles, with_values ? values : none, several);
+            EXPECT_TRUE(alone.length_mm.values == several.length_mm.values);
+            EXPECT_TRUE(alone.contrast_mm_mg_ml.values == several.contrast_mm_mg_ml.values);
+            EXPECT_EQ(several.bad_pixels, 0U);
+        }
+        EXPECT_GT(*std::max_element(alone.length_mm.values.begin(), alone.length_mm.values.end()), 25.0F);
+    }
+}
+
 TEST(PathRaster, WhatLiesPartlyBesideThePictureIsDrawnAsFarAsItIsSeen) {
     const CArmView v = view(0, 60);
     const TriMesh tube = cylinder(Vec3(12, 0, 0), 8, 400, 64);
