@@ -40,11 +40,17 @@ bool pictured(const ReplayOptions& options) {
            !film.frames.empty() || !options.still.empty();
 }
 
-std::unique_ptr<Film> open_film(const ReplayOptions& options, const SceneSpec& scene, int threads,
+// What the film says of its pictures as it is closed.
+struct Exposed {
+    std::size_t pictures = 0, open = 0;
+};
+
+std::unique_ptr<Film> open_film(const ReplayOptions& options, const SceneSpec& scene, int threads, Exposed& exposed,
                                 int draw_threads = 1) {
     const std::string video = options.film.video == "none" ? "" : options.film.video;
     FilmOptions film = film_options(options.film, scene, video, options.out);
     film.draw_threads = draw_threads;
+    film.at_close = [&exposed](std::size_t pictures, std::size_t open) { exposed = {pictures, open}; };
     return std::make_unique<Film>(scene, film, threads);
 }
 
@@ -68,14 +74,15 @@ void render_poses(const ReplayOptions& options, const RunRecord& run, AppContext
                   " instants a second; pictures between two show the earlier one (--simulate: their own)");
     // Nothing is stepped: what describing and encoding leave over draws.
     const int encoding = options.film.video == "none" || options.film.video.empty() ? 0 : 1;
+    Exposed exposed;
     const std::unique_ptr<Film> film =
-        open_film(options, scene, threads.film, std::max(1, options.threads - 1 - encoding));
+        open_film(options, scene, threads.film, exposed, std::max(1, options.threads - 1 - encoding));
     const std::int64_t end = end_of(options, recorded.steps(), scene.step.dt_s);
     const std::int64_t done = recorded.film(*film, end);
     close_film(options, *film);
     if (done < end) throw UserError("stopped after step " + std::to_string(done) + " of " + std::to_string(end));
-    std::printf("%s: %zu pictures of %lld steps, from its poses\n", options.folder.c_str(), film->frames(),
-                static_cast<long long>(done));
+    std::printf("%s: %zu pictures of %lld steps, from its poses; %zu exposed, open surfaces met in %zu\n",
+                options.folder.c_str(), film->frames(), static_cast<long long>(done), exposed.pictures, exposed.open);
 }
 
 void replay(const ReplayOptions& options, AppContext& context) {
@@ -87,8 +94,9 @@ void replay(const ReplayOptions& options, AppContext& context) {
     Session session(scene, run.manifest.seed, threads.step, context);
     if (session.anatomy_hash() != run.manifest.anatomy_hash)
         throw UserError(options.folder + ": the anatomy is built otherwise than when this run was recorded");
+    Exposed exposed;
     std::unique_ptr<Film> film;
-    if (pictured(options)) film = open_film(options, scene, threads.film);
+    if (pictured(options)) film = open_film(options, scene, threads.film, exposed);
     Progress progress("replaying");
     std::int64_t k = 0;
     const std::int64_t end = end_of(options, run.steps, session.dt());
@@ -113,6 +121,7 @@ void replay(const ReplayOptions& options, AppContext& context) {
         throw UserError(options.folder + ": " + verifier->channel_difference());
     std::printf("%s: %lld steps replayed", options.folder.c_str(), static_cast<long long>(k));
     if (verifier) std::printf(", %zu state hashes and every channel agree", verifier->compared());
+    if (film) std::printf("; %zu pictures exposed, open surfaces met in %zu", exposed.pictures, exposed.open);
     std::printf("\n");
 }
 

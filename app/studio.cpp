@@ -19,6 +19,7 @@ struct Studio::Impl {
         renderer.set_probe(probe);
         if (!options.path.empty())
             writer.emplace(options.path, options.width, options.height, options.fps, options.codec);
+        at_close = options.at_close;
         dicom_path = options.dicom;
         dicom_facts = options.dicom_facts;
         frames = options.frames;
@@ -39,7 +40,8 @@ struct Studio::Impl {
     DicomFacts dicom_facts;
     bool frames_as_float = false;
     std::optional<DicomWriter> dicom;  // opened at its first picture, whose size it takes
-    std::size_t open_pictures = 0;
+    std::size_t exposed = 0, open_pictures = 0;
+    std::function<void(std::size_t, std::size_t)> at_close;
     std::future<void> encoding;  // destroyed, and so waited for, before what it works on
 
     Image8& last() { return pictures[(count + 1) % 2]; }
@@ -47,6 +49,7 @@ struct Studio::Impl {
     void keep_exposure(const FilmFrame& frame) {
         const FrameRect at = layout_of(frame.picture).fluoroscopy;
         if (at.width == 0 || !frame.picture.beam_on) return;
+        ++exposed;
         if (renderer.bad_pixels() > 0) ++open_pictures;
         if (!dicom_path.empty()) {
             if (!dicom) {
@@ -98,6 +101,7 @@ void Studio::close() {
     m.wait();
     if (m.writer && m.count > 0) m.writer->close();
     m.writer.reset();
+    if (m.at_close) m.at_close(m.exposed, m.open_pictures);
     if (m.open_pictures > 0)
         log::warn("open surfaces: in " + std::to_string(m.open_pictures) +
                   " pictures some rays enter what they do not leave");

@@ -28,6 +28,9 @@ struct FilmOptions {
     bool frames_as_float = false;  ///< raw floats instead of 16-bit PNG
     ViewChange view = {};
     int draw_threads = 1;  ///< of a picture; the bytes are the same on any number
+    /// Called as the film is closed: pictures that were exposed, and those of them in which a ray did not leave what it
+    /// entered.
+    std::function<void(std::size_t exposed, std::size_t open)> at_close = {};
 };
 
 /// What a picture is drawn from, and what the machine said when it was taken.

@@ -41,6 +41,7 @@ std::vector<float> gaussian(double sigma) {
     const int radius = std::max(5, static_cast<int>(std::ceil(3 * sigma)));
     const double per = 2 * units::pi * units::pi * sigma * sigma;
     std::vector<double> taps;
+    taps.reserve(2 * static_cast<std::size_t>(radius) + 1);
     double sum = 0;
     for (int n = -radius; n <= radius; ++n) {
         double integral = 0;  // trapezoid over half of the even function
@@ -167,6 +168,7 @@ ImageF wide_blur(const ImageF& image, double sigma_px, const Workers& workers) {
         return Between{static_cast<std::size_t>(first), static_cast<float>(f - first)};
     };
     std::vector<Between> columns;
+    columns.reserve(static_cast<std::size_t>(image.width));
     for (int x = 0; x < image.width; ++x) columns.push_back(between(x, coarse.width));
     const std::size_t next = coarse.width > 1 ? 1 : 0;
     ImageF out(image.width, image.height);

@@ -1,5 +1,5 @@
 // The L-buffer: how many mm of a closed surface's inside every ray passes, in float32 (Freud et al. 2006, Vidal et al.
-// 2009).  Here by GL, for the torso's solids; path_raster.h has the lumen.
+// 2009).  Here by GL: the other way, beside which path_raster.h, which draws the pictures, is tested.
 #pragma once
 
 #include <memory>
