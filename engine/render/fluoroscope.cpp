@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 #include <utility>
 
 #include "core/check.h"
@@ -21,6 +20,7 @@
 #include "render/projection.h"
 #include "render/scatter.h"
 #include "render/shutter.h"
+#include "render/solid_groups.h"
 #include "render/subtraction.h"
 #include "render/view_key.h"
 
@@ -28,9 +28,8 @@ namespace cathlab {
 
 namespace {
 
-constexpr int device_samples = 3;             // rays a side and pixel: a wire is about one pixel wide
-constexpr double scatter_sigma_mm = 40.0;     // width of the scatter kernel at the detector
-constexpr double usual_magnification = 1.45;  // SID / SOD of C-arms: 1.4 to 1.5
+constexpr int device_samples = 3;          // rays a side and pixel: a wire is about one pixel wide
+constexpr double scatter_sigma_mm = 40.0;  // width of the scatter kernel at the detector
 constexpr double harmonisation_sigma_mm = 25.0;
 constexpr float blade_transmission = 1e-4F;           // of 3 mm lead: 4e-4 at 80 keV, less below
 constexpr double dsa_window = 1.2, dsa_level = 0.82;  // width in ln, grey of what has not changed
@@ -43,17 +42,6 @@ BinValues difference(const BeamTable& beam, const std::string& inside, const std
     const BinValues other = beam.attenuation(outside);
     for (std::size_t k = 0; k < energy_bins; ++k) mu[k] -= other[k];
     return mu;
-}
-
-void resize(ImageF& image, const Projection& projection) {
-    image.width = projection.width();
-    image.height = projection.height();
-    image.values.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
-}
-
-double magnification(const CArmView& view, const Projection& projection) {
-    return view.source_isocentre_mm > 0 ? projection.source_detector_mm() / view.source_isocentre_mm
-                                        : usual_magnification;
 }
 
 static_assert(pixel_loops::bins == energy_bins);
@@ -82,24 +70,16 @@ struct Fluoroscope::Impl {
     std::unique_ptr<BeamTable> beam;
     double beam_kvp = 0, beam_copper = -1;
 
-    // Solids of equal material in equal surroundings: drawn in one pass, as one surface.
-    struct Group {
-        std::string material, surrounding;
-        bool moving = false;
-        std::vector<std::size_t> solids, first_vertex;  // which of the frame's, and where theirs begin
-        std::vector<Triangle> triangles;
-        std::vector<Vec3> vertices;  // mm, world
-    };
-    std::vector<Group> groups;
-    std::size_t solid_count = 0;
-    std::uint64_t solids_revision = 0, lumen_revision = 0;
-    bool solids_known = false, lumen_known = false;
+    SolidGroups groups;
+    std::uint64_t lumen_revision = 0;
+    bool lumen_known = false;
 
     // The context of the present view.
     ViewKey context, view;
+    std::vector<float> geometry;               // a pixel: inverse square, obliquity and blades
     std::vector<BinValues> transmission;       // a pixel: weight * exp(-E) of each bin, geometry factor included
     std::vector<PathLengths> context_lengths;  // one a group of solids that stand still
-    ImageF geometry, context_intensity, scatter, coarse_log;
+    ImageF context_intensity, scatter, coarse_log;
     double reference = 1, coarse_mean = 0, photons_of_kerma = 1;
     std::size_t context_bad = 0, bad = 0;
 
@@ -131,40 +111,9 @@ struct Fluoroscope::Impl {
         beam_copper = e.copper_mm;
     }
 
-    void group_solids(const FrameDescription& f) {
-        if (solids_known && solids_revision == f.solids_revision && solid_count == f.solids.size()) return;
-        std::map<std::tuple<std::string, std::string, bool>, Group> known;
-        for (std::size_t i = 0; i < f.solids.size(); ++i) {
-            const FrameSolid& solid = f.solids[i];
-            require_closed(solid.mesh, "solid of " + solid.material);
-            if (solid.mesh.empty()) continue;
-            Group& group = known[{solid.material, solid.surrounding, solid.moving}];
-            group.material = solid.material;
-            group.surrounding = solid.surrounding;
-            group.moving = solid.moving;
-            group.solids.push_back(i);
-            group.first_vertex.push_back(group.vertices.size());
-            const Triangle shift = Triangle::Constant(static_cast<Index>(group.vertices.size()));
-            for (const Triangle& t : solid.mesh.triangles) group.triangles.emplace_back(t + shift);
-            group.vertices.resize(group.vertices.size() + solid.mesh.vertices.size());
-        }
-        groups.clear();
-        for (auto& [media, group] : known) groups.push_back(std::move(group));
-        solids_revision = f.solids_revision;
-        solid_count = f.solids.size();
-        solids_known = true;
-    }
-
     // Its path lengths as the solids stand in this frame.
-    void draw_group(const FrameDescription& f, const Projection& projection, Group& group, PathLengths& out) {
-        workers.for_ranges(group.solids.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                const FrameSolid& solid = f.solids[group.solids[k]];
-                const Mat3 turn = solid.pose.orientation.toRotationMatrix();
-                Vec3* to = group.vertices.data() + group.first_vertex[k];
-                for (const Vec3& p : solid.mesh.vertices) *to++ = turn * p + solid.pose.position;
-            }
-        });
+    void draw_group(const FrameDescription& f, const Projection& projection, SolidGroup& group, PathLengths& out) {
+        group.place(f, workers);
         raster.draw(projection, group.vertices, group.triangles, {}, out);
     }
 
@@ -194,22 +143,21 @@ void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection
     const auto columns = static_cast<std::size_t>(width);
     context_bad = 0;
     std::vector<BinValues> mu;
-    std::vector<const float*> amounts;
     std::size_t passes = 0;
-    for (Group& group : groups) {
+    for (SolidGroup& group : groups.all()) {
         if (group.moving) continue;
         if (passes == context_lengths.size()) context_lengths.emplace_back();
         PathLengths& lengths = context_lengths[passes++];
         draw_group(f, projection, group, lengths);
         context_bad += lengths.bad_pixels;
         mu.push_back(difference(*beam, group.material, group.surrounding));
-        amounts.push_back(lengths.length_mm.values.data());
     }
     std::vector<pixel_loops::Absorber> absorbers;
-    for (std::size_t p = 0; p < passes; ++p) absorbers.push_back({amounts[p], mu[p].data()});
+    for (std::size_t p = 0; p < passes; ++p)
+        absorbers.push_back({context_lengths[p].length_mm.values.data(), mu[p].data()});
     transmission.resize(count);
-    resize(context_intensity, projection);
-    resize(geometry, projection);
+    geometry.resize(count);
+    context_intensity = ImageF(width, projection.height());
     std::vector<float> blades(columns);  // what they let through in each column
     for (int x = 0; x < width; ++x)
         blades[static_cast<std::size_t>(x)] = is_open(x + 0.5, width, f.view.open_width) ? 1.0F : blade_transmission;
@@ -222,16 +170,15 @@ void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection
             // squared way from the source to the pixel is a + (b + c x) x.
             const Vec3 start = projection.to_detector(0.5, row), across = projection.to_detector(1.5, row) - start;
             const double a = start.squaredNorm(), b = 2.0 * start.dot(across), c = across.squaredNorm();
-            float* g = geometry.values.data() + y * columns;
+            float* g = geometry.data() + y * columns;
             for (int x = 0; x < width; ++x) {
                 const double cosine = sid / std::sqrt(a + (b + c * x) * x);
                 g[x] = static_cast<float>(cosine * cosine * cosine);
             }
             for (std::size_t x = 0; x < columns; ++x) g[x] *= row_lit ? blades[x] : blade_transmission;
         }
-        loops.pass_context(absorbers.data(), absorbers.size(), beam->weights().data(), geometry.values.data(),
-                           begin * columns, end * columns, transmission.data()->data(),
-                           context_intensity.values.data());
+        loops.pass_context(absorbers.data(), absorbers.size(), beam->weights().data(), geometry.data(), begin * columns,
+                           end * columns, transmission.data()->data(), context_intensity.values.data());
     });
     // The measuring field stays within what the collimator leaves open.
     const double side = std::clamp(f.exposure.measuring_field, 0.05, 1.0);
@@ -289,7 +236,7 @@ void Fluoroscope::Impl::make_context(const FrameDescription& f, const Projection
 }
 
 void Fluoroscope::Impl::draw_moving(const FrameDescription& f, const Projection& projection) {
-    for (Group& group : groups) {
+    for (SolidGroup& group : groups.all()) {
         if (!group.moving) continue;
         Part& part = next_part();
         draw_group(f, projection, group, part.lengths);
@@ -487,7 +434,7 @@ const std::vector<std::uint8_t>& Fluoroscope::draw(const FrameDescription& frame
     const bool new_context = !(context == self.context);
     require_before_source(frame, projection, new_context);
     self.use_beam(frame.exposure);
-    self.group_solids(frame);
+    self.groups.update(frame);
     ViewKey view = view_key(frame, width, height);
     if (!(view == self.view)) {
         self.history = {};
@@ -546,7 +493,7 @@ void Fluoroscope::reset() {
     impl_->subtraction.forget();
     impl_->reference_grey.clear();
     impl_->context = {};
-    impl_->solids_known = false;
+    impl_->groups.forget();
 }
 
 }  // namespace cathlab

@@ -54,4 +54,9 @@ std::array<float, 16> Projection::clip_matrix() const {
     return m;
 }
 
+double magnification(const CArmView& view, const Projection& projection) {
+    constexpr double usual = 1.45;
+    return view.source_isocentre_mm > 0 ? projection.source_detector_mm() / view.source_isocentre_mm : usual;
+}
+
 }  // namespace cathlab

@@ -46,4 +46,7 @@ private:
     bool mirrored_ = false;
 };
 
+/// SID / SOD, of what lies at the isocentre; 1.45 where the view does not say (C-arms: 1.4 to 1.5).
+double magnification(const CArmView& view, const Projection& projection);
+
 }  // namespace cathlab
