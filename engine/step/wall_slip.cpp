@@ -12,8 +12,11 @@ void let_slip(Parts& p, const EffectContext& context, std::span<Vec3> support_di
     const Entity vessel = p.world->owner<SupportState>();
     if (!p.world->get<SlipState>(vessel)) p.world->add(vessel, SlipState{std::vector<Vec3>(wall.size(), Vec3::Zero())});
     std::vector<Vec3>& slipped = p.world->get<SlipState>(vessel)->slipped_mm;
-    const SoftBodyScratch& scratch = *p.wall_scratch;
+    SoftBodyScratch& scratch = *p.wall_scratch;
     const bool known = scratch.goal.size() == wall.size();  // a substep has been done
+    // The last pass left goals for where the wall stood before it, and only round devices: k (g - x) is what the wall
+    // pulls with where g belongs to x.
+    if (known) solve_goals(wall, *p.wall_state, scratch, p.world->workers());
     for (std::size_t i = 0; i < wall.size(); ++i) {
         if (!wall.fixed[i]) continue;
         if (known) {
