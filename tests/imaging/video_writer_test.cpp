@@ -11,7 +11,6 @@
 
 #include "core/errors.h"
 #include "imaging/film_codec.h"
-#include "imaging/film_codec.h"
 
 namespace cathlab {
 namespace {
