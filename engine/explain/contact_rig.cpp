@@ -15,10 +15,8 @@ namespace {
 
 // Models are searched on particles so far apart; what that costs is known of the base model, which is solved on finer
 // ones too, and taken off every model in proportion.
-static const double spacing_mm = std::getenv("SP") ? std::atof(std::getenv("SP")) : 4.0,
-                    far_spacing_mm = 2.25 * spacing_mm;
-static const double fine_spacing_mm = std::getenv("SPF") ? std::atof(std::getenv("SPF")) : 2.5,
-                    fine_far_spacing_mm = 2.4 * fine_spacing_mm;
+constexpr double spacing_mm = 4.0, far_spacing_mm = 9.0;
+constexpr double fine_spacing_mm = 2.5, fine_far_spacing_mm = 6.0;
 
 // Factors kept of every sample's matrix are some MB each.
 constexpr std::size_t most_factors = 400;

@@ -1,4 +1,5 @@
-// Headers of guests (Bullet, OpenCV, ...) stay where no other room can see them; Eigen is the exception.
+// Headers of guests (Bullet, OpenCV, ...) stay where no other room can see them; Eigen is the exception.  What else no
+// file of the engine may do.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -63,4 +64,16 @@ TEST(Includes, NoRoomSeesAPackageThroughAnotherRoomsHeader) {
 TEST(Includes, NoFileOfTheEngineIsAboveFiveHundredLines) {
     for (const fs::path& file : architecture::files_below(engine, {".h", ".cpp", ".inl"}))
         EXPECT_LE(architecture::read_lines(file).size(), 500U) << file;
+}
+
+// What a world does is said by its files and by who calls it: a variable of the shell would change it unseen.
+TEST(Includes, NoFileOfTheEngineAsksTheEnvironment) {
+    static const std::regex pattern(R"(\b(secure_)?getenv\b|\benviron\b)");
+    for (const fs::path& file : architecture::files_below(engine, {".h", ".cpp", ".inl"})) {
+        int number = 0;
+        for (const std::string& line : architecture::read_lines(file)) {
+            ++number;
+            EXPECT_FALSE(std::regex_search(line, pattern)) << file << ":" << number << ": " << line;
+        }
+    }
 }
