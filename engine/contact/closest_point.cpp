@@ -155,6 +155,15 @@ SurfacePoint closest(const LumenSurfaceModel& model, const LumenSurfaceState& st
     return with_side(model, state, p, best);
 }
 
+SurfacePoint closest_credible(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p,
+                              double max_distance, Index hint, double radius, double deepest_mm,
+                              const NearTriangles* near) {
+    const auto credible = [&](const SurfacePoint& s) { return !s.found() || radius - s.signed_distance <= deepest_mm; };
+    SurfacePoint found = closest(model, state, p, max_distance, hint, near);
+    if (!credible(found) && hint >= 0) found = closest(model, state, p, max_distance, -1, near);
+    return credible(found) ? found : SurfacePoint{};
+}
+
 std::optional<SurfacePoint> first_exit(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& a,
                                        const Vec3& b) {
     CATHLAB_CHECK(a.allFinite() && b.allFinite(), "a device point must be finite");

@@ -30,6 +30,13 @@ std::vector<Vec3> ContactSet::pressing(std::span<const DeviceSample> samples_now
     return places;
 }
 
+double ContactSet::credible_depth(std::size_t row) const {
+    double deepest = 0.0;
+    for (std::size_t r = row; r < rows_.size() && wall_[r].sample == wall_[row].sample; ++r)
+        deepest = std::max(deepest, -rows_[r].gap);
+    return deepest + credible_slack_mm;
+}
+
 TrueDepth ContactSet::true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
                                  std::span<const DeviceSample> samples_now, double force_mn, double front_mn) const {
     TrueDepth deepest;
@@ -38,8 +45,8 @@ TrueDepth ContactSet::true_depth(const LumenSurfaceModel& model, const LumenSurf
         if (wall_[r].sample == last || !presses_hard(r, samples_now, force_mn, front_mn)) continue;
         const DeviceSample& s = samples_now[at(wall_[r].sample)];
         last = wall_[r].sample;
-        const SurfacePoint nearest =
-            closest(model, surface, s.position, settings_.recovery_mm, memory_.triangle[at(last)]);
+        const SurfacePoint nearest = closest_credible(model, surface, s.position, settings_.recovery_mm,
+                                                      memory_.triangle[at(last)], s.radius, credible_depth(r));
         const double depth = nearest.found() ? s.radius - nearest.signed_distance : 0.0;
         if (depth > deepest.mm) deepest = {depth, s.device};
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/check.h"
@@ -108,8 +109,8 @@ ContactSet::ContactSet(const ContactSettings& settings) : settings_(settings) {
 }
 
 ContactSet::Found ContactSet::look(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
-                                   const DeviceSample& sample, Index hint, bool known_inside, double margin,
-                                   const NearTriangles& near) const {
+                                   const DeviceSample& sample, Index hint, bool known_inside, double deepest_mm,
+                                   double margin, const NearTriangles& near) const {
     Found found;
     const Vec3 motion = sample.position - sample.previous;
     const double moved = motion.norm();
@@ -126,8 +127,10 @@ ContactSet::Found ContactSet::look(const LumenSurfaceModel& model, const LumenSu
     // the middle of a wide vessel need not look at all of its walls.
     const bool look_far = !known_inside || moved > 0.5 * margin;
     const SurfacePoint nearest =
-        look_far ? closest(model, surface, sample.position, std::max(reach, settings_.recovery_mm + moved), hint)
-                 : closest(model, surface, sample.position, reach, hint, &near);
+        look_far
+            ? closest_credible(model, surface, sample.position, std::max(reach, settings_.recovery_mm + moved), hint,
+                               sample.radius, deepest_mm + moved)
+            : closest_credible(model, surface, sample.position, reach, hint, sample.radius, deepest_mm + moved, &near);
     found.hint = nearest.triangle;
     found.outside = nearest.found() && nearest.signed_distance < 0.0;
     if (!nearest.found() || nearest.signed_distance > reach || nearest.inward_normal.squaredNorm() < 0.5) return found;
@@ -213,13 +216,17 @@ void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState&
             }
             Index hint = s.hint;
             bool known_inside = false;
+            double deepest_mm = std::numeric_limits<double>::infinity();
             if (remembered[i] >= 0) {
-                const std::size_t place = at(old_memory.place[at(remembered[i])]);
+                const std::size_t sample = at(remembered[i]), place = at(old_memory.place[sample]);
                 if (hint < 0) hint = old_memory.triangle[place];
                 known_inside = old_memory.outside[place] == 0;
+                deepest_mm = credible_slack_mm;
+                for (std::int64_t r = old_memory.first_row[sample]; r < old_memory.first_row[sample + 1]; ++r)
+                    deepest_mm = std::max(deepest_mm, credible_slack_mm - old_rows[at(r)].gap);
             }
             near.gather(model.tree, surface.boxes, leaves, s.position, s.radius + margin);
-            found[i] = look(model, surface, s, hint < triangles ? hint : -1, known_inside, margin, near);
+            found[i] = look(model, surface, s, hint < triangles ? hint : -1, known_inside, deepest_mm, margin, near);
         }
     });
 

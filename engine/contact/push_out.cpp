@@ -55,17 +55,24 @@ double push_out(const LumenSurfaceModel& model, const TreePart& near, const Cont
                 std::span<const DeviceSample> samples, double depth_mm, std::span<const double> particle_compliance,
                 std::span<Vec3> particles, LumenSurfaceState& surface, const Workers& workers) {
     std::vector<Index> touching;
-    for (const WallRow& row : contacts.wall_rows())
-        if (touching.empty() || touching.back() != row.sample) touching.push_back(row.sample);
+    std::vector<double> credible;  // how deep each of them can be
+    const std::span<const WallRow> rows = contacts.wall_rows();
+    for (std::size_t r = 0; r < rows.size(); ++r)
+        if (touching.empty() || touching.back() != rows[r].sample) {
+            touching.push_back(rows[r].sample);
+            credible.push_back(contacts.credible_depth(r));
+        }
     std::map<Index, Vec3> start, best;  // of the particles moved so far: where they lay at first, and in the best round
     double least = std::numeric_limits<double>::infinity();
     for (int round = 0;; ++round) {
         update(model, particles, near, surface, workers);
         double deepest = 0.0;
         std::vector<SurfacePoint> wall;
-        for (const Index s : touching) {
-            wall.push_back(closest(model, surface, samples[at(s)].position, reach_mm, contacts.hint(at(s))));
-            if (wall.back().found()) deepest = std::max(deepest, samples[at(s)].radius - wall.back().signed_distance);
+        for (std::size_t k = 0; k < touching.size(); ++k) {
+            const DeviceSample& s = samples[at(touching[k])];
+            wall.push_back(closest_credible(model, surface, s.position, reach_mm, contacts.hint(at(touching[k])),
+                                            s.radius, credible[k]));
+            if (wall.back().found()) deepest = std::max(deepest, s.radius - wall.back().signed_distance);
         }
         if (deepest < least) {
             least = deepest;

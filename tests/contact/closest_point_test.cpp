@@ -116,6 +116,27 @@ TEST(ClosestPoint, APointThatSlippedOutStaysWithItsVesselThoughTheNeighbourIsNea
     EXPECT_GT(closest(s.model, s.state, Vec3(2.6, 0, 15.1), far).signed_distance, 0.0);
 }
 
+TEST(ClosestPoint, ASheetThatASphereNeverWentThroughIsNotItsWall) {
+    TriMesh mesh = test::straight_tube(5.0, 30.0, 40, 48);
+    test::add_tube(
+        mesh, [](double s) { return Vec3(1.0, 0.0, 30.0 * s); }, 2.0, 40,
+        24);  // as a fold: inside, and seen from behind
+    const Surface s(mesh);
+    const Vec3 p(4.5, 0.05, 15.1);
+    const Index fold = closest(s.model, s.state, Vec3(2.8, 0, 15), far).triangle;
+    constexpr double radius = 1.0;
+    EXPECT_NEAR(closest(s.model, s.state, p, far, fold).signed_distance, -1.5, 0.05);
+    const SurfacePoint wall = closest_credible(s.model, s.state, p, far, fold, radius, credible_slack_mm);
+    ASSERT_TRUE(wall.found());
+    EXPECT_NEAR(wall.signed_distance, 0.5, 0.05);
+    // One that was as deep before may have gone through it.
+    EXPECT_NEAR(closest_credible(s.model, s.state, p, far, fold, radius, 2.6).signed_distance, -1.5, 0.05);
+    // Where all there is lies too deep, there is no wall; where it is deeper by as much as facets turn, there is.
+    const Vec3 beyond(6.0, 0.05, 15.1);
+    EXPECT_FALSE(closest_credible(s.model, s.state, beyond, far, -1, radius, credible_slack_mm).found());
+    EXPECT_TRUE(closest_credible(s.model, s.state, beyond, far, -1, radius, 1.4 + credible_slack_mm).found());
+}
+
 TEST(ClosestPoint, APointThatCrossesTheLumenChangesWalls) {
     const Surface s(test::straight_tube(4.0, 40.0, 40, 24));
     Index hint = closest(s.model, s.state, Vec3(-3.5, 0, 20), far).triangle;
