@@ -158,7 +158,7 @@ SurfacePoint closest(const LumenSurfaceModel& model, const LumenSurfaceState& st
 SurfacePoint closest_credible(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p,
                               double max_distance, Index hint, double radius, double deepest_mm,
                               const NearTriangles* near) {
-    const auto credible = [&](const SurfacePoint& s) { return !s.found() || radius - s.signed_distance <= deepest_mm; };
+    const auto credible = [&](const SurfacePoint& s) { return !s.found() || s.signed_distance >= 0.0 || radius - s.signed_distance <= deepest_mm; };
     SurfacePoint found = closest(model, state, p, max_distance, hint, near);
     if (!credible(found) && hint >= 0) found = closest(model, state, p, max_distance, -1, near);
     return credible(found) ? found : SurfacePoint{};

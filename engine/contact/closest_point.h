@@ -38,14 +38,15 @@ SurfacePoint closest(const LumenSurfaceModel& model, const LumenSurfaceState& st
 
 /// The same for a sphere of `radius` that is known to be no deeper in the wall than `deepest_mm`.  Where a wall is
 /// folded over a device, its patch about the hint, and even the closest point of all, may be a sheet that lies the
-/// other way round, and the sphere on its far side without ever having gone through it.  An answer that is too deep to
-/// be true is asked for again without the hint, and is no answer if it still is.
+/// other way round, and the sphere on its far side without ever having gone through it.  An answer that puts the centre
+/// beyond the wall and deeper than can be is asked for again without the hint, and is no answer if it still does.
 SurfacePoint closest_credible(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p,
                               double max_distance, Index hint, double radius, double deepest_mm,
                               const NearTriangles* near = nullptr);
 
-/// How much deeper than its rows say (mm) a sphere may be found in a wall whose facets turn under it.
-constexpr double credible_slack_mm = 0.7;
+/// How much deeper than its rows say (mm) a sphere may be found in a wall whose facets turn under it: up to 0.75
+/// were seen.
+constexpr double credible_slack_mm = 1.0;
 
 /// The place where the segment from a to b first leaves the lumen (crosses a triangle against its inward normal), if
 /// any. signed_distance is that of b to the plane of the triangle.

@@ -146,6 +146,8 @@ WallAround wall_around(const Parts& p, const CatheterShape& now) {
 constexpr double run_a_substep_mm = 0.2;
 // ... and where the last substep found it deep in a wall that folds round it, no further than this.
 constexpr double run_when_deep_mm = 0.05;
+// ... but beyond its force limit it goes along with the wall that presses it: as fast as the heart moves the root.
+constexpr double run_when_overloaded_mm = 0.4;
 constexpr double swung_wire_mn = 50.0;
 
 // A wire that sticks out and touches the wall is swung by the catheter: then it, too, is at the wall.
@@ -281,7 +283,9 @@ double move_catheter(Parts& p, const Input& input, const SegmentBends& bends, do
         for (WallLimit& l : limits) l.force = 0.0;
         held = true;
     }
-    const double most_mm = route.deep ? run_when_deep_mm : run_a_substep_mm;
+    double most_mm = route.deep ? run_when_deep_mm : run_a_substep_mm;
+    if (around.load > 1.0)
+        most_mm = std::max(most_mm, std::min(run_when_overloaded_mm, run_a_substep_mm * around.load));
     const double pace =
         at_the_wall(p, around) ? pace_at_the_wall(*p.catheter, state, command, rail, start, h, limit, most_mm) : 1.0;
     command.advance_mm *= pace;
