@@ -18,7 +18,7 @@ struct ExpectedHash {
 };
 constexpr std::array<ExpectedHash, 3> expected_hashes{{
     {"tube_wire", 0x464f5bc39f07cd1c},
-    {"tube_catheter", 0x05377a87796f1430},
+    {"tube_catheter", 0x14361b6fd89a0d2f},
     {"fork", 0x6002b14a98cf81ed},
 }};
 
