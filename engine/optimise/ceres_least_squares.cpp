@@ -65,6 +65,48 @@ private:
     mutable int evaluations_ = 0;
 };
 
+bool on_bound(double u) {
+    constexpr double near = 1e-9;
+    return u <= near || u >= 1.0 - near;
+}
+
+/// Ends a search when a number comes to its bound.  Ceres cuts a step off there and takes what is left of it, which in
+/// a valley that goes through the bound leads up its side: the steps shrink until nothing falls any more.
+class BoundReached final : public ceres::IterationCallback {
+public:
+    explicit BoundReached(const std::vector<double>& u) : u_(u) {
+        for (const double place : u) were_.push_back(on_bound(place));
+    }
+    ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+        if (summary.iteration == 0) return ceres::SOLVER_CONTINUE;
+        for (std::size_t k = 0; k < u_.size(); ++k) reached_ = reached_ || (on_bound(u_[k]) && !were_[k]);
+        return reached_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    }
+    bool reached() const { return reached_; }
+
+private:
+    const std::vector<double>& u_;
+    std::vector<bool> were_;
+    bool reached_ = false;
+};
+
+/// Those of the free numbers that stand on a bound, and would fall further beyond it.
+std::vector<std::size_t> pushed_out(const Block& block, const std::vector<double>& u, std::size_t residuals) {
+    std::vector<std::size_t> out;
+    if (std::none_of(u.begin(), u.end(), on_bound)) return out;
+    std::vector<double> residual(residuals), slopes(residuals * u.size());
+    const double* parameters = u.data();
+    double* jacobian = slopes.data();
+    if (!block.Evaluate(&parameters, residual.data(), &jacobian)) return out;
+    for (std::size_t k = 0; k < u.size(); ++k) {
+        if (!on_bound(u[k])) continue;
+        double gradient = 0.0;
+        for (std::size_t i = 0; i < residuals; ++i) gradient += residual[i] * slopes[i * u.size() + k];
+        if (u[k] < 0.5 ? gradient >= 0.0 : gradient <= 0.0) out.push_back(k);
+    }
+    return out;
+}
+
 }  // namespace
 
 Result minimise_squares(const LeastSquaresProblem& problem, const LeastSquaresOptions& options) {
@@ -95,29 +137,51 @@ Result minimise_squares(const LeastSquaresProblem& problem, const LeastSquaresOp
     if (problem.residual(x, residual)) result.value = half_square();
     if (free.empty() || problem.residuals == 0 || !std::isfinite(result.value)) return result;
 
-    auto* block = new Block(problem, free, x, options.step);  // the ceres::Problem owns it
-    ceres::Problem solved;
-    solved.AddResidualBlock(block, nullptr, u.data());
-    for (int k = 0; k < static_cast<int>(free.size()); ++k) {
-        solved.SetParameterLowerBound(u.data(), k, 0.0);
-        solved.SetParameterUpperBound(u.data(), k, 1.0);
-    }
-    ceres::Solver::Options how;
-    how.max_num_iterations = options.max_iterations;
-    how.function_tolerance = options.value_tolerance;
-    how.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-    how.logging_type = ceres::SILENT;
-    how.num_threads = 1;
-    ceres::Solver::Summary summary;
-    ceres::Solve(how, &solved, &summary);
-    result.evaluations += block->evaluations();
-    for (std::size_t k = 0; k < free.size(); ++k) x[free[k]] = block->value(k, u[k]);
-    if (problem.residual(x, residual)) {
-        const double value = half_square();
-        if (value < result.value) {
-            result.value = value;
-            result.best = x;
+    // What is pushed against its bound is held there while the others go on, until none comes to one or leaves it.
+    for (int left = options.max_iterations; left > 0;) {
+        const Block all(problem, free, result.best, options.step);
+        const std::vector<std::size_t> held = pushed_out(all, u, problem.residuals);
+        result.evaluations += all.evaluations();
+        std::vector<std::size_t> going;  // of the free ones
+        std::vector<double> at;
+        for (std::size_t k = 0; k < free.size(); ++k) {
+            if (std::find(held.begin(), held.end(), k) != held.end()) continue;
+            going.push_back(k);
+            at.push_back(u[k]);
         }
+        if (going.empty()) break;
+        std::vector<std::size_t> numbers;
+        for (const std::size_t k : going) numbers.push_back(free[k]);
+        auto* block = new Block(problem, numbers, result.best, options.step);  // the ceres::Problem owns it
+        ceres::Problem solved;
+        solved.AddResidualBlock(block, nullptr, at.data());
+        for (int k = 0; k < static_cast<int>(at.size()); ++k) {
+            solved.SetParameterLowerBound(at.data(), k, 0.0);
+            solved.SetParameterUpperBound(at.data(), k, 1.0);
+        }
+        BoundReached reached(at);
+        ceres::Solver::Options how;
+        how.max_num_iterations = left;
+        how.function_tolerance = options.value_tolerance;
+        how.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+        how.logging_type = ceres::SILENT;
+        how.num_threads = 1;
+        how.update_state_every_iteration = true;
+        how.callbacks.push_back(&reached);
+        ceres::Solver::Summary summary;
+        ceres::Solve(how, &solved, &summary);
+        result.evaluations += block->evaluations() + 1;
+        left -= std::max(1, static_cast<int>(summary.iterations.size()) - 1);
+        x = result.best;
+        for (std::size_t k = 0; k < going.size(); ++k) x[numbers[k]] = block->value(k, at[k]);
+        if (!problem.residual(x, residual)) break;
+        const double value = half_square();
+        if (!(value < result.value)) break;
+        const bool little = value > (1.0 - options.value_tolerance) * result.value;
+        result.value = value;
+        result.best = x;
+        for (std::size_t k = 0; k < going.size(); ++k) u[going[k]] = at[k];
+        if (!reached.reached() && (little || std::none_of(u.begin(), u.end(), on_bound))) break;
     }
     return result;
 }
