@@ -1,9 +1,10 @@
 // Breathing moves what the vessels hang on.  Displacement of a support at height z:
-//     u(z, t) = a w(z) sin^(2 n)(pi s(t / T)) d,
+//     u(z, t) = a w(z) c(t / T) d,   c = max(0, sin^(2 n)(pi s) - rest) / (1 - rest),
 // the breathing curve of Lujan et al. (1999), which dwells at end-expiration the longer the larger n is, and time
-// counted from there; until `held_until_s` the breath is held at the share `held` of inspiration, from where it goes
-// over to the curve within a fifth of a breath; w falls from 1 at and above the diaphragm's height to 0 at the pelvis,
-// because bone holds the iliac arteries.
+// counted from there; s spends the part `inspiration` of a breath on the way from 0 to 1/2.  What comes to lie against
+// something before the breath is out (a stage against its stop) is still for the part of the curve below `rest`.  A
+// breath that is held stands until `held_until_s` where it then sets in.  w falls from 1 at and above the diaphragm's
+// height to 0 at the pelvis, because bone holds the iliac arteries.
 #include <algorithm>
 #include <cmath>
 
@@ -13,8 +14,6 @@
 
 namespace cathlab {
 namespace {
-
-constexpr double begins_within = 0.2;  // of a breath
 
 class Respiration final : public Effect {
 public:
@@ -27,14 +26,14 @@ public:
           lower_(p[7]),
           dwell_(p[8]),
           inspiration_(p[9]),
-          held_until_(p[10]),
-          held_(p[11]) {
+          rest_(p[10]),
+          held_until_(p[11]) {
         const double n = std::sqrt(direction_.squaredNorm());
         direction_ = n > 0.0 ? Vec3(direction_ / n) : Vec3(0.0, 0.0, -1.0);
     }
 
     void drive(const EffectContext& context, Drive& drive) override {
-        const double now = context.time_s + context.dt;
+        const double now = std::max(context.time_s + context.dt, held_until_);
         double place = now / period_ + phase_;
         if (inspiration_ != 0.5) {
             place -= std::floor(place);
@@ -43,10 +42,7 @@ public:
         }
         const double s = det::sin(units::pi * place);
         double curve = dwell_ == 2.0 ? s * s * s * s : det::pow(s * s, dwell_);
-        if (held_until_ > 0.0) {
-            const double begun = std::clamp((now - held_until_) / (begins_within * period_), 0.0, 1.0);
-            curve = held_ + begun * begun * (3.0 - 2.0 * begun) * (curve - held_);
-        }
+        if (rest_ > 0.0) curve = std::max(0.0, (curve - rest_) / (1.0 - rest_));
         const double breath = amplitude_ * curve;
         for (std::size_t i = 0; i < drive.support_displacement.size(); ++i) {
             const double z = context.wall_rest[i].z();
@@ -59,7 +55,7 @@ public:
 private:
     double amplitude_, period_, phase_;
     Vec3 direction_;
-    double upper_, lower_, dwell_, inspiration_, held_until_, held_;
+    double upper_, lower_, dwell_, inspiration_, rest_, held_until_;
 };
 
 }  // namespace
@@ -84,8 +80,8 @@ EffectInfo respiration_effect() {
                 {"lower_z_mm", "mm", -300.0, -2000.0, 2000.0, "height below which they stand still"},
                 {"dwell", "1", 2.0, 1.0, 4.0, "n: 1 = a sine, 2 = rests at end-expiration, more = rests longer"},
                 {"inspiration", "1", 0.5, 0.2, 0.8, "part of a breath that inspiration takes"},
+                {"rest", "1", 0.0, 0.0, 0.9, "part of the curve, from end-expiration, in which it lies still"},
                 {"held_until_s", "s", 0.0, 0.0, 20.0, "until then the breath is held; 0 = it is not"},
-                {"held", "1", 0.0, 0.0, 1.0, "where it is held: 0 = end-expiration, 1 = end-inspiration"},
             },
         .strengths = {"amplitude_mm"},
         .make = [](std::span<const double> p) -> std::unique_ptr<Effect> { return std::make_unique<Respiration>(p); },

@@ -139,19 +139,28 @@ TEST(SensorDrift, CreepsByItsRate) {
     EXPECT_NEAR(c.annulus_displacement_mm, 1.5, 1e-12);
 }
 
-TEST(Respiration, AHeldBreathGoesOverToTheCurveWithinAFifthOfABreath) {
-    const std::vector<Vec3> rest{Vec3::Zero()};
-    const auto effect = made("respiration", {10.0, 4.0, 0.0, 0.0, 0.0, 1.0, -100.0, -300.0, 1.0, 0.5, 2.0, 0.25});
+/// Where a support that breathes by 10 mm in 4 s is at a time, mm.
+double breathed(double dwell, double rest, double held_until_s, double time_s) {
+    const std::vector<Vec3> place{Vec3::Zero()};
+    const auto effect =
+        made("respiration", {10.0, 4.0, 0.0, 0.0, 0.0, 1.0, -100.0, -300.0, dwell, 0.5, rest, held_until_s});
     EffectContext context;
-    context.wall_rest = rest;
-    const auto at = [&](double time_s) {
-        context.time_s = time_s;
-        return driven(*effect, context).support_displacement[0].z();
-    };
+    context.wall_rest = place;
+    context.time_s = time_s;
+    return driven(*effect, context).support_displacement[0].z();
+}
+
+TEST(Respiration, AHeldBreathStandsWhereItThenSetsIn) {
     const auto curve = [](double time_s) { return 10.0 * std::pow(std::sin(units::pi * time_s / 4.0), 2); };
-    for (const double t : {0.0, 0.7, 2.0}) EXPECT_NEAR(at(t), 2.5, 1e-12);
-    EXPECT_NEAR(at(2.4), 0.5 * (2.5 + curve(2.4)), 1e-9);
-    for (const double t : {2.8, 3.3, 9.1}) EXPECT_NEAR(at(t), curve(t), 1e-9);
+    for (const double t : {0.0, 0.4, 1.3}) EXPECT_NEAR(breathed(1.0, 0.0, 1.3, t), curve(1.3), 1e-9);
+    for (const double t : {1.31, 2.8, 9.1}) EXPECT_NEAR(breathed(1.0, 0.0, 1.3, t), curve(t), 1e-9);
+}
+
+TEST(Respiration, LiesStillForThePartOfTheCurveThatIsItsRest) {
+    // A sine that is cut at a quarter of its height rests for a third of its period and comes as far as ever.
+    for (const double t : {0.0, 0.3, 0.66, 3.34, 3.9}) EXPECT_EQ(breathed(1.0, 0.25, 0.0, t), 0.0) << t;
+    EXPECT_NEAR(breathed(1.0, 0.25, 0.0, 2.0), 10.0, 1e-9);
+    EXPECT_NEAR(breathed(1.0, 0.25, 0.0, 1.0), 10.0 / 3.0, 1e-9);
 }
 
 TEST(RegionalMotion, BeginsEveryBeatWhereItStandsAndGoesTwiceRoundInIt) {
