@@ -13,16 +13,6 @@ namespace {
 
 constexpr std::size_t few = 2;  // base numbers
 
-bool is_strength(const EffectInfo& effect, const Parameter& p) {
-    return std::find(effect.strengths.begin(), effect.strengths.end(), p.key) != effect.strengths.end();
-}
-bool is_phase(const Parameter& p) {
-    return p.key == "phase";
-}
-bool is_direction(const Parameter& p) {
-    return p.key.starts_with("direction");
-}
-
 /// Numbers that may be of any size between a trace and a mountain are searched by their logarithm:
 /// q = ln(1 + v / usual).
 class Scale {
@@ -71,11 +61,6 @@ std::vector<double> defaults(const EffectInfo& effect) {
     return out;
 }
 
-const EffectTrial& trial_of(const FittedModel& model, const EffectInfo& effect) {
-    return *std::find_if(model.effects.begin(), model.effects.end(),
-                         [&](const EffectTrial& trial) { return trial.effect == &effect; });
-}
-
 /// All but their strengths is the same.
 bool same_shape(const EffectInfo& effect, const EffectTrial& a, const EffectTrial& b) {
     for (std::size_t k = 0; k < effect.parameters.size(); ++k)
@@ -94,6 +79,21 @@ std::vector<double> acting(const EffectInfo& effect) {
 }
 
 }  // namespace
+
+bool is_strength(const EffectInfo& effect, const Parameter& p) {
+    return std::find(effect.strengths.begin(), effect.strengths.end(), p.key) != effect.strengths.end();
+}
+bool is_phase(const Parameter& p) {
+    return p.key == "phase";
+}
+bool is_direction(const Parameter& p) {
+    return p.key.starts_with("direction");
+}
+
+const EffectTrial& trial_of(const FittedModel& model, const EffectInfo& effect) {
+    return *std::find_if(model.effects.begin(), model.effects.end(),
+                         [&](const EffectTrial& trial) { return trial.effect == &effect; });
+}
 
 bool is_own(const EffectInfo& effect, const Parameter& p) {
     return is_direction(p) || p.key == "held_until_s" || (p.unit == "mm" && is_strength(effect, p));
@@ -129,6 +129,20 @@ double Fitter::cost_of(const FittedModel& model) const {
     return mean_cost(model.residual, rig_.split(), 0, scale_);
 }
 
+double Fitter::misfit(const FittedModel& model) const {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < model.residual.size(); ++c) {
+        double cost = 0.0, rows = 0.0;
+        for (std::size_t i = 0; i < model.residual[c].size(); ++i) {
+            if (rig_.split().held_out[i] != 0 || std::isnan(model.residual[c][i])) continue;
+            cost += scale_.cost(c, model.residual[c][i]);
+            rows += 1.0;
+        }
+        if (rows > 0.0) sum += rows * std::log(std::max(cost / rows, 1e-12));
+    }
+    return sum;
+}
+
 void Fitter::refit(FittedModel& model, int iterations, bool base_too) const {
     refit(model, iterations, base_too, rig_.memory().get());
 }
@@ -142,9 +156,7 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too, RigMemory*
     problem.bounds = base;
     problem.start = model.base;
     std::vector<double> weights(base.size(), 0.0), centres(base.size(), 0.0);
-    double rows = 0.0;
-    for (const auto& column : model.residual)
-        for (std::size_t i = 0; i < column.size(); ++i) rows += split.held_out[i] == 0 && !std::isnan(column[i]);
+    const double rows = known_rows(model.residual, split, 0);
     for (const EffectTrial& trial : model.effects) {
         const std::vector<bool>& free = free_parameters(*trial.effect);
         for (std::size_t k = 0; k < trial.values.size(); ++k) {
@@ -434,12 +446,16 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
     for (std::vector<FittedModel>& way : tried)
         if (way.size() > searched) way.resize(searched);
     FittedModel best, own;
-    own.train_cost = best.train_cost = std::numeric_limits<double>::infinity();
+    const auto take = [&](FittedModel& most, FittedModel& model) {
+        const bool first = most.effects.empty();
+        const bool closer_to = first || (rig_.slow() ? better(model, most) : misfit(model) < misfit(most));
+        if (closer_to) most = std::move(model);
+    };
     if (may_differ(effect))
         for (const std::vector<FittedModel>& way : tried)
             for (const FittedModel& model : way) {
                 FittedModel other = each_run_its_own(model, effect);
-                if (other.train_cost < own.train_cost) own = std::move(other);
+                take(own, other);
             }
     for (std::vector<FittedModel>& way : tried) {
         int iterations = rig_.slow() ? 6 : 10;
@@ -451,21 +467,25 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
         }
         for (FittedModel& model : way) {
             refit(model, iterations, base_too, memory.get());
-            if (model.train_cost < best.train_cost) best = std::move(model);
+            take(best, model);
         }
     }
-    if (!rig_.slow()) refit(best, rig_.bounds().empty() ? 30 : 15);
+    const auto finish = [&](FittedModel& model, int iterations) {
+        closer(model).refit(model, iterations);
+        model.train_cost = cost_of(model);
+    };
+    if (!rig_.slow()) finish(best, rig_.bounds().empty() ? 30 : 15);
     if (own.effects.empty()) return best;
     // Numbers of their own have to pay for themselves [schwarz1978].
-    refit(own, 15);
+    settle_runs(own, effect);
+    finish(own, 15);
     centre(own, effect);
-    double rows = 0.0, numbers = 0.0;
-    for (const auto& column : own.residual)
-        for (std::size_t i = 0; i < column.size(); ++i) rows += rig_.split().held_out[i] == 0 && !std::isnan(column[i]);
+    const double rows = known_rows(own.residual, rig_.split(), 0);
+    double numbers = 0.0;
     for (std::size_t k = 0; k < effect.parameters.size(); ++k)
         numbers += free_parameters(effect)[k] && is_own(effect, effect.parameters[k]) ? 1.0 : 0.0;
     numbers *= static_cast<double>(rig_.data().run_names.size() - 1);
-    return rows * std::log(best.train_cost / own.train_cost) > numbers * std::log(rows) ? own : best;
+    return misfit(best) - misfit(own) > numbers * std::log(rows) ? own : best;
 }
 
 FittedModel Fitter::without(const FittedModel& from, std::size_t k) const {

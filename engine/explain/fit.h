@@ -48,6 +48,14 @@ public:
 
 private:
     double cost_of(const FittedModel& model) const;
+    /// How much is left in each column by what there was, all columns alike: the sum over them of rows x ln(mean cost).
+    double misfit(const FittedModel& model) const;
+    /// The same search with errors weighed by what a model leaves: a column that was far off counts as much as others.
+    Fitter closer(const FittedModel& model) const {
+        Fitter out = *this;
+        out.weigh_by(model);
+        return out;
+    }
     /// A rig of few base numbers whose models take no time: shapes are searched together with the base numbers.
     bool quick() const;
     /// The model's numbers with one effect more; nothing fitted yet.
@@ -59,8 +67,20 @@ private:
     std::vector<double> cost_of_runs(const Columns& residual) const;
     /// Where all of an effect's numbers are the recordings' own, what they have alike is the heart's beat: taken out.
     void centre(FittedModel& model, const EffectInfo& effect) const;
+    /// Effect number `place` as `chance` has it in those recordings where that costs less than `least`.
+    void keep_what_helps(FittedModel& model, std::size_t place, const EffectTrial& chance,
+                         std::vector<double>& least) const;
+    /// Phases all around: each recording keeps what helps it.
+    void turn_runs(FittedModel& model, std::size_t place, std::vector<double>& least) const;
+    /// The same, and what has no slope where it is (a time at which something sets in) all over its range.
+    void sweep_runs(FittedModel& model, std::size_t place) const;
+    /// The effect the other way round in one recording after another, where that is better once it is fitted.
+    void reverse_runs(FittedModel& model, std::size_t place) const;
     /// Numbers of their own for the recordings, searched from where the model is.
     FittedModel each_run_its_own(FittedModel model, const EffectInfo& effect) const;
+    /// What all recordings have alike takes the shape that suits most of them, which shows the others that they are
+    /// wrong: sweeps and reversals by turns, until nothing helps.
+    void settle_runs(FittedModel& model, const EffectInfo& effect) const;
     std::vector<std::vector<double>> starts(const FittedModel& from, const EffectInfo& effect) const;
 
     const Rig& rig_;
@@ -68,6 +88,13 @@ private:
     LossScale scale_;
     std::map<const EffectInfo*, std::vector<bool>> free_;
 };
+
+bool is_strength(const EffectInfo& effect, const Parameter& p);
+bool is_phase(const Parameter& p);
+bool is_direction(const Parameter& p);
+
+/// What the model has of an effect that it holds.
+const EffectTrial& trial_of(const FittedModel& model, const EffectInfo& effect);
 
 /// Whether recordings of different places may each have this number for their own: how far and which way the effect
 /// moves a place, and from when on.

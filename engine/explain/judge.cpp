@@ -45,6 +45,14 @@ LossScale loss_scale(const Columns& residual, const Split& split, double least) 
     return out;
 }
 
+double known_rows(const Columns& residual, const Split& split, std::uint8_t part) {
+    double rows = 0.0;
+    for (const auto& column : residual)
+        for (std::size_t i = 0; i < column.size(); ++i)
+            rows += split.held_out[i] == part && !std::isnan(column[i]) ? 1.0 : 0.0;
+    return rows;
+}
+
 double mean_cost(const Columns& residual, const Split& split, std::uint8_t part, const LossScale& scale) {
     double sum = 0.0, rows = 0.0;
     for (std::size_t c = 0; c < residual.size(); ++c)

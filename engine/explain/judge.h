@@ -19,6 +19,9 @@ struct LossScale {
 /// Robust scales (1.4826 median absolute value) of the rows that the fit sees, at least `least` (the declared noise).
 LossScale loss_scale(const Columns& residual, const Split& split, double least);
 
+/// Known rows of a part, all columns together.
+double known_rows(const Columns& residual, const Split& split, std::uint8_t part);
+
 /// Mean cost of a known row of a part.
 double mean_cost(const Columns& residual, const Split& split, std::uint8_t part, const LossScale& scale);
 

@@ -1,6 +1,7 @@
 #!/bin/sh
 # The whole confusion matrix of `cathlab explain` on made recordings, as CSV lines and tables for docs/closing-the-loop.md.
 #   tests/explain/confusion_matrix.sh BUILD_FOLDER [SEEDS [THREADS [KIND [EFFECT]]]]
+# EFFECT "clean" means those on which nothing acts.
 # A line: kind, effect, strength, seed, what was named, hit or miss, both of two effects found, held-out error over the
 # noise floor, seconds of one processor.
 set -eu

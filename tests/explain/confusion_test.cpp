@@ -134,7 +134,7 @@ std::string wish(const char* variable, const char* otherwise) {
 }  // namespace
 
 /// Every effect, every pair, two strengths, CATHLAB_MATRIX_SEEDS seeds (3), and five clean sets a seed and kind.
-/// CATHLAB_MATRIX_KIND, _EFFECT: that one alone; _THREADS (1).
+/// CATHLAB_MATRIX_KIND, _EFFECT ("clean": none): that one alone; _THREADS (1).
 TEST(Confusion, DISABLED_WholeMatrix) {
     const int seeds = std::stoi(wish("CATHLAB_MATRIX_SEEDS", "3"));
     const std::string only_kind = wish("CATHLAB_MATRIX_KIND", ""), only = wish("CATHLAB_MATRIX_EFFECT", "");
@@ -143,7 +143,7 @@ TEST(Confusion, DISABLED_WholeMatrix) {
         for (const std::string kind : {"catheter-tip", "heart-motion", "wall-tension", "tendon-tip"}) {
             if (!only_kind.empty() && kind != only_kind) continue;
             const auto add = [&](const std::string& effect, int strength, int number) {
-                if (!only.empty() && effect != only) return;
+                if (!only.empty() && (effect.empty() ? "clean" : effect) != only) return;
                 Cell& cell = cells.emplace_back();
                 cell.seed = number;
                 cell.recipe = {kind, effect, strength, static_cast<std::uint64_t>(100 + number), rows_of(kind)};

@@ -90,6 +90,37 @@ TEST(Explain, NamesTheBreathingThatNobodyDeclared) {
     }
 }
 
+TEST(Explain, FindsInEachRecordingFromWhenOnAStageMovesAndThatItMeetsAStop) {
+    // A sine about the place where the stage stood, cut off by its stop; a trace of it in the other column.
+    std::ostringstream csv;
+    csv << "run,t_s,x_mm,y_mm,z_mm\n";
+    constexpr double period = 3.3, begins_s[3] = {1.7, 3.1, 0.6}, stop_mm = 4.5, noise = 0.15;
+    for (std::uint64_t run = 0; run < 3; ++run)
+        for (std::uint64_t i = 0; i < 330; ++i) {
+            const double t = 0.06 * static_cast<double>(i), at = static_cast<double>(run);
+            const double z = std::min(stop_mm, 9.0 * std::sin(2.0 * pi * std::max(0.0, t - begins_s[run]) / period));
+            const double place[3] = {2.0 * at + 0.04 * z, 1.0 - 0.02 * z, z - 5.0 * at};
+            csv << run << "," << t;
+            for (std::uint64_t k = 0; k < 3; ++k)
+                csv << "," << place[k] + noise * random_normal(1, RandomStream::test, k, 330 * run + i);
+            csv << "\n";
+        }
+    const Folder folder(heart_toml("[]", "0.15"), csv.str());
+    ExplainOptions options;
+    options.max_effects = 1;
+    options.threads = 3;
+    const Explanation found = explain(read_dataset(folder.path()), options);
+    ASSERT_EQ(found.effects.size(), 1U);
+    EXPECT_EQ(found.effects[0].name, "respiration");
+    EXPECT_EQ(found.verdict, Verdict::explained);
+    EXPECT_LE(found.held_out_after, 1.15 * noise);
+    for (int run = 0; run < 3; ++run)
+        for (const auto& [key, value] : found.effects[0].of_runs.at(std::to_string(run)))
+            if (key == "held_until_s") {
+                EXPECT_NEAR(value, begins_s[run], 0.05) << run;
+            }
+}
+
 TEST(Explain, GivesTheSameAnswerOnAnyNumberOfThreads) {
     const Folder folder = heart(6, 0.2, [](double t) { return 2.0 * std::pow(std::sin(pi * t / 5.1), 4); });
     const Dataset data = read_dataset(folder.path());
