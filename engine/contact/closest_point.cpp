@@ -156,9 +156,13 @@ SurfacePoint closest(const LumenSurfaceModel& model, const LumenSurfaceState& st
 }
 
 SurfacePoint closest_credible(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p,
-                              double max_distance, Index hint, double radius, double deepest_mm,
+                              double max_distance, Index hint, double radius, const WallSeen& seen,
                               const NearTriangles* near) {
-    const auto credible = [&](const SurfacePoint& s) { return !s.found() || s.signed_distance >= 0.0 || radius - s.signed_distance <= deepest_mm; };
+    const auto credible = [&](const SurfacePoint& s) {
+        return !s.found() || s.signed_distance >= 0.0 ||
+               radius - s.signed_distance <= seen.depth_mm + credible_slack_mm ||
+               s.inward_normal.dot(seen.pressed_by) > 0.0;
+    };
     SurfacePoint found = closest(model, state, p, max_distance, hint, near);
     if (!credible(found) && hint >= 0) found = closest(model, state, p, max_distance, -1, near);
     return credible(found) ? found : SurfacePoint{};

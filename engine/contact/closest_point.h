@@ -1,6 +1,7 @@
 // Where is the wall, and on which side of it are we?
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -36,16 +37,22 @@ struct SurfacePoint {
 SurfacePoint closest(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p, double max_distance,
                      Index hint = -1, const NearTriangles* near = nullptr);
 
-/// The same for a sphere of `radius` that is known to be no deeper in the wall than `deepest_mm`.  Where a wall is
-/// folded over a device, its patch about the hint, and even the closest point of all, may be a sheet that lies the
-/// other way round, and the sphere on its far side without ever having gone through it.  An answer that puts the centre
-/// beyond the wall and deeper than can be is asked for again without the hint, and is no answer if it still does.
+/// What is known of the wall at a device's sphere from the last look at it.
+struct WallSeen {
+    double depth_mm = std::numeric_limits<double>::infinity();  ///< how deep it was in it
+    Vec3 pressed_by = Vec3::Zero();  ///< inward normal of what pressed it hardest; zero = nothing did
+};
+
+/// The same for a sphere of `radius`.  Where a wall is folded over a device, its patch about the hint, and even the
+/// closest point of all, may be a sheet that lies the other way round, and the sphere on its far side without ever
+/// having gone through it.  An answer is believed that leaves the centre within the lumen, that is no more than
+/// credible_slack_mm deeper than was seen, or that faces as what pressed the sphere did: a wall that is driven through
+/// a tip stays its own.  Any other is asked for again without the hint, and is no answer if it is as bad.
 SurfacePoint closest_credible(const LumenSurfaceModel& model, const LumenSurfaceState& state, const Vec3& p,
-                              double max_distance, Index hint, double radius, double deepest_mm,
+                              double max_distance, Index hint, double radius, const WallSeen& seen,
                               const NearTriangles* near = nullptr);
 
-/// How much deeper than its rows say (mm) a sphere may be found in a wall whose facets turn under it: up to 0.75
-/// were seen.
+/// Facets turn under a sphere: it may be found so much deeper (mm) than its rows said; 0.75 were seen.
 constexpr double credible_slack_mm = 1.0;
 
 /// The place where the segment from a to b first leaves the lumen (crosses a triangle against its inward normal), if

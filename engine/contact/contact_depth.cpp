@@ -30,11 +30,22 @@ std::vector<Vec3> ContactSet::pressing(std::span<const DeviceSample> samples_now
     return places;
 }
 
-double ContactSet::credible_depth(std::size_t row) const {
-    double deepest = 0.0;
-    for (std::size_t r = row; r < rows_.size() && wall_[r].sample == wall_[row].sample; ++r)
-        deepest = std::max(deepest, -rows_[r].gap);
-    return deepest + credible_slack_mm;
+WallSeen wall_seen(std::span<const ChainRow> rows) {
+    WallSeen seen{0.0, Vec3::Zero()};
+    double strongest = 0.0;
+    for (const ChainRow& row : rows) {
+        seen.depth_mm = std::max(seen.depth_mm, -row.gap);
+        if (row.multiplier <= strongest) continue;
+        strongest = row.multiplier;
+        seen.pressed_by = row.normal;
+    }
+    return seen;
+}
+
+WallSeen ContactSet::seen_by_sample_of(std::size_t row) const {
+    std::size_t end = row;
+    while (end < rows_.size() && wall_[end].sample == wall_[row].sample) ++end;
+    return wall_seen(std::span(rows_).subspan(row, end - row));
 }
 
 TrueDepth ContactSet::true_depth(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
@@ -46,7 +57,7 @@ TrueDepth ContactSet::true_depth(const LumenSurfaceModel& model, const LumenSurf
         const DeviceSample& s = samples_now[at(wall_[r].sample)];
         last = wall_[r].sample;
         const SurfacePoint nearest = closest_credible(model, surface, s.position, settings_.recovery_mm,
-                                                      memory_.triangle[at(last)], s.radius, credible_depth(r));
+                                                      memory_.triangle[at(last)], s.radius, seen_by_sample_of(r));
         const double depth = nearest.found() ? s.radius - nearest.signed_distance : 0.0;
         if (depth > deepest.mm) deepest = {depth, s.device};
     }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "core/check.h"
@@ -109,7 +108,7 @@ ContactSet::ContactSet(const ContactSettings& settings) : settings_(settings) {
 }
 
 ContactSet::Found ContactSet::look(const LumenSurfaceModel& model, const LumenSurfaceState& surface,
-                                   const DeviceSample& sample, Index hint, bool known_inside, double deepest_mm,
+                                   const DeviceSample& sample, Index hint, bool known_inside, WallSeen seen,
                                    double margin, const NearTriangles& near) const {
     Found found;
     const Vec3 motion = sample.position - sample.previous;
@@ -126,11 +125,11 @@ ContactSet::Found ContactSet::look(const LumenSurfaceModel& model, const LumenSu
     // What was inside and moved little is inside still, or in reach of the wall that it went into: the many samples in
     // the middle of a wide vessel need not look at all of its walls.
     const bool look_far = !known_inside || moved > 0.5 * margin;
+    seen.depth_mm += moved;
     const SurfacePoint nearest =
-        look_far
-            ? closest_credible(model, surface, sample.position, std::max(reach, settings_.recovery_mm + moved), hint,
-                               sample.radius, deepest_mm + moved)
-            : closest_credible(model, surface, sample.position, reach, hint, sample.radius, deepest_mm + moved, &near);
+        look_far ? closest_credible(model, surface, sample.position, std::max(reach, settings_.recovery_mm + moved),
+                                    hint, sample.radius, seen)
+                 : closest_credible(model, surface, sample.position, reach, hint, sample.radius, seen, &near);
     found.hint = nearest.triangle;
     found.outside = nearest.found() && nearest.signed_distance < 0.0;
     if (!nearest.found() || nearest.signed_distance > reach || nearest.inward_normal.squaredNorm() < 0.5) return found;
@@ -216,17 +215,16 @@ void ContactSet::detect(const LumenSurfaceModel& model, const LumenSurfaceState&
             }
             Index hint = s.hint;
             bool known_inside = false;
-            double deepest_mm = std::numeric_limits<double>::infinity();
+            WallSeen seen;
             if (remembered[i] >= 0) {
                 const std::size_t sample = at(remembered[i]), place = at(old_memory.place[sample]);
                 if (hint < 0) hint = old_memory.triangle[place];
                 known_inside = old_memory.outside[place] == 0;
-                deepest_mm = credible_slack_mm;
-                for (std::int64_t r = old_memory.first_row[sample]; r < old_memory.first_row[sample + 1]; ++r)
-                    deepest_mm = std::max(deepest_mm, credible_slack_mm - old_rows[at(r)].gap);
+                const std::size_t row = at(old_memory.first_row[sample]);
+                seen = wall_seen(std::span(old_rows).subspan(row, at(old_memory.first_row[sample + 1]) - row));
             }
             near.gather(model.tree, surface.boxes, leaves, s.position, s.radius + margin);
-            found[i] = look(model, surface, s, hint < triangles ? hint : -1, known_inside, deepest_mm, margin, near);
+            found[i] = look(model, surface, s, hint < triangles ? hint : -1, known_inside, seen, margin, near);
         }
     });
 

@@ -90,6 +90,9 @@ struct TrueDepth {
     Index device = -1;  ///< -1 = none
 };
 
+/// What the rows of one sample know of the wall.
+WallSeen wall_seen(std::span<const ChainRow> rows);
+
 class ContactSet {
 public:
     explicit ContactSet(const ContactSettings& settings = {});
@@ -126,8 +129,8 @@ public:
     /// The rows of one device for the chain solve, contiguous, ascending from the tip; multipliers are in and out.
     std::span<ChainRow> chain_rows(Index device);
 
-    /// How deep (mm) the sample of `row`, its first one, can be in a wall as its rows stand (closest_credible).
-    double credible_depth(std::size_t row) const;
+    /// What the rows of one sample, from its first one `row` on, know of the wall.
+    WallSeen seen_by_sample_of(std::size_t row) const;
 
     /// Moves the wall (particles, mm) by the change of one device's row forces since `before` (a copy of chain_rows),
     /// each particle by its own compliance: what apply will find, so that the rows can be looked at again at once.
@@ -184,9 +187,8 @@ private:
     };
     struct Found;
 
-    /// deepest_mm: no wall can be further than that out of the way of the sample.
     Found look(const LumenSurfaceModel& model, const LumenSurfaceState& surface, const DeviceSample& sample, Index hint,
-               bool known_inside, double deepest_mm, double margin, const NearTriangles& near) const;
+               bool known_inside, WallSeen seen, double margin, const NearTriangles& near) const;
     /// Row r: sample `s` (at `place` in its span) against the k-th of the walls that it found.
     void make_row(const LumenSurfaceModel& model, const DeviceSample& s, const Found& found, int k, Index place,
                   std::span<const Vec3> particles_before, std::size_t r);

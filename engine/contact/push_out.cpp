@@ -55,12 +55,12 @@ double push_out(const LumenSurfaceModel& model, const TreePart& near, const Cont
                 std::span<const DeviceSample> samples, double depth_mm, std::span<const double> particle_compliance,
                 std::span<Vec3> particles, LumenSurfaceState& surface, const Workers& workers) {
     std::vector<Index> touching;
-    std::vector<double> credible;  // how deep each of them can be
+    std::vector<WallSeen> seen;  // what the rows of each know
     const std::span<const WallRow> rows = contacts.wall_rows();
     for (std::size_t r = 0; r < rows.size(); ++r)
         if (touching.empty() || touching.back() != rows[r].sample) {
             touching.push_back(rows[r].sample);
-            credible.push_back(contacts.credible_depth(r));
+            seen.push_back(contacts.seen_by_sample_of(r));
         }
     std::map<Index, Vec3> start, best;  // of the particles moved so far: where they lay at first, and in the best round
     double least = std::numeric_limits<double>::infinity();
@@ -71,7 +71,7 @@ double push_out(const LumenSurfaceModel& model, const TreePart& near, const Cont
         for (std::size_t k = 0; k < touching.size(); ++k) {
             const DeviceSample& s = samples[at(touching[k])];
             wall.push_back(closest_credible(model, surface, s.position, reach_mm, contacts.hint(at(touching[k])),
-                                            s.radius, credible[k]));
+                                            s.radius, seen[k]));
             if (wall.back().found()) deepest = std::max(deepest, s.radius - wall.back().signed_distance);
         }
         if (deepest < least) {

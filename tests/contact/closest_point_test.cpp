@@ -126,15 +126,19 @@ TEST(ClosestPoint, ASheetThatASphereNeverWentThroughIsNotItsWall) {
     const Index fold = closest(s.model, s.state, Vec3(2.8, 0, 15), far).triangle;
     constexpr double radius = 1.0;
     EXPECT_NEAR(closest(s.model, s.state, p, far, fold).signed_distance, -1.5, 0.05);
-    const SurfacePoint wall = closest_credible(s.model, s.state, p, far, fold, radius, credible_slack_mm);
-    ASSERT_TRUE(wall.found());
-    EXPECT_NEAR(wall.signed_distance, 0.5, 0.05);
-    // One that was as deep before may have gone through it.
-    EXPECT_NEAR(closest_credible(s.model, s.state, p, far, fold, radius, 2.6).signed_distance, -1.5, 0.05);
-    // Where all there is lies too deep, there is no wall; where it is deeper by as much as facets turn, there is.
+    const auto seen = [&](const Vec3& at, Index hint, double depth_mm, const Vec3& pressed_by = Vec3::Zero()) {
+        return closest_credible(s.model, s.state, at, far, hint, radius, {depth_mm, pressed_by});
+    };
+    ASSERT_TRUE(seen(p, fold, 0.0).found());
+    EXPECT_NEAR(seen(p, fold, 0.0).signed_distance, 0.5, 0.05);
+    // One that was as deep before may have gone through it, and so may one that was pressed from there.
+    EXPECT_NEAR(seen(p, fold, 1.6).signed_distance, -1.5, 0.05);
+    EXPECT_NEAR(seen(p, fold, 0.0, -Vec3::UnitX()).signed_distance, -1.5, 0.05);
+    EXPECT_NEAR(seen(p, fold, 0.0, Vec3::UnitX()).signed_distance, 0.5, 0.05);
+    // Where all there is lies too deep, there is no wall.
     const Vec3 beyond(6.0, 0.05, 15.1);
-    EXPECT_FALSE(closest_credible(s.model, s.state, beyond, far, -1, radius, credible_slack_mm).found());
-    EXPECT_TRUE(closest_credible(s.model, s.state, beyond, far, -1, radius, 1.4 + credible_slack_mm).found());
+    EXPECT_FALSE(seen(beyond, -1, 0.0).found());
+    EXPECT_TRUE(seen(beyond, -1, 1.2).found());
 }
 
 TEST(ClosestPoint, APointThatCrossesTheLumenChangesWalls) {

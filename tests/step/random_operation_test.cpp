@@ -165,6 +165,38 @@ TEST(RandomFullSpeedOperation, NeverLeavesThePatientsVessels) {
     operate_with_every_seed(load_scene(scene, {}, CATHLAB_SOURCE_DIR), run_seconds(3.0));
 }
 
+// Bent in a way of its own, the catheter is pushed on into the root while the heart closes it: presses at which a fold
+// of the wall once turned round over the tip and was driven along the shaft (up to 124 mm of wall, 77 N).
+TEST(PressedCatheter, DoesNotThrowTheBeatingRoot) {
+    SceneSpec spec = load_scene(std::string(CATHLAB_SOURCE_DIR) + "/scenes/tasks/c.toml", {}, CATHLAB_SOURCE_DIR);
+    spec.catheter.insertion_mm = 725.0;
+    BuildOptions options;
+    options.cache_folder = models_folder();
+    const auto models = build_models(spec, options);
+    constexpr double root_swing_mm = 11.6;  // of the heart and the breath alone
+    for (const std::uint64_t press : {39, 40, 47}) {
+        SCOPED_TRACE(press);
+        RigRun run(build_world(spec, *models, spec.seed, 1));
+        const auto draw = [&](std::uint64_t i) { return random_uniform(7, RandomStream::test, press, i); };
+        Input input;
+        input.device = 1.0;
+        input.proximal_bend = 50.0 * draw(0);
+        input.distal_bend = 140.0 * draw(1);
+        input.proximal_direction = 360.0 * draw(2) - 180.0;
+        input.distal_direction = std::remainder(input.proximal_direction + 60.0 * draw(3) - 30.0, 360.0);
+        double wall_mm = 0.0, force_mn = 0.0;
+        for (int k = 0; k < 200; ++k) {
+            input.advance = k < 40 ? 0.0 : 20.0;
+            run.step(input);
+            wall_mm = std::max(wall_mm, run.channels.wall_displacement_max_mm);
+            force_mn = std::max(force_mn, run.channels.catheter_force_mn);
+        }
+        EXPECT_LT(wall_mm, root_swing_mm + 2.0);
+        EXPECT_LT(force_mn, 3000.0);
+        EXPECT_GT(force_mn, 300.0) << "nothing was pressed";
+    }
+}
+
 TEST(InsideAccount, ReadsTheDepthByWhichATubeIsShifted) {
     RigRun run("tube_wire");
     LumenSurfaceState surface;
