@@ -20,9 +20,18 @@ std::span<const EffectInfo> effect_table() {
 
 void ask_membrane(std::span<Effect* const> effects, const EffectContext& context, const MembraneMaterial& material,
                   const Fibres& fibres, MembranePoint& point) {
+    const Vec3 c = point.c;
     for (Effect* effect : effects) effect->strain(context, point);
     ask_elastic_law(material, fibres, point);
     for (Effect* effect : effects) effect->stress(context, point);
+    for (Effect* effect : effects) effect->share(context, c, {effects, context, material, fibres, *effect}, point);
+}
+
+void RestOfWall::ask(MembranePoint& point) const {
+    for (Effect* effect : effects_)
+        if (effect != &without_) effect->strain(context_, point);
+    ask_elastic(point);
+    for (Effect* effect : effects_) effect->stress(context_, point);
 }
 
 const EffectInfo* find_effect(std::string_view name) {

@@ -97,6 +97,8 @@ struct HeldPoint {
     Vec3 slipped = Vec3::Zero();   ///< where what holds it has gone, mm: effects add to it
 };
 
+class RestOfWall;
+
 class Effect {
 public:
     virtual ~Effect() = default;
@@ -116,6 +118,10 @@ public:
     /// Changes point.stress, which the elastic law has written with energy_kpa, and point.at_once where the wall is
     /// stiffer than that law when strained at once.
     virtual void stress(const EffectContext& /*context*/, MembranePoint& /*point*/) {}
+    /// After all of these, of an effect that lies in series with the rest of the wall and has to bear what that bears:
+    /// shares the strain at c out anew and writes `point`.  As stress().
+    virtual void share(const EffectContext& /*context*/, const Vec3& /*c*/, const RestOfWall& /*rest*/,
+                       MembranePoint& /*point*/) {}
     /// The (sub)step is over and has ended so.
     virtual void remember(const EffectContext& /*context*/, const MembranePoint& /*point*/) {}
     /// Adds to `slipped`; no lasting change, as stress().
@@ -159,6 +165,26 @@ struct EffectInfo {
 /// The law of a membrane's point with effects in it: strain, elastic law, stress.
 void ask_membrane(std::span<Effect* const> effects, const EffectContext& context, const MembraneMaterial& material,
                   const Fibres& fibres, MembranePoint& point);
+
+/// The wall without what one effect takes of its strain.
+class RestOfWall {
+public:
+    RestOfWall(std::span<Effect* const> effects, const EffectContext& context, const MembraneMaterial& material,
+               const Fibres& fibres, const Effect& without)
+        : effects_(effects), context_(context), material_(material), fibres_(fibres), without_(without) {}
+    /// Strain, elastic law and stress of all others, at point.c.
+    void ask(MembranePoint& point) const;
+    double poisson() const { return material_.thinning / (1.0 + material_.thinning); }
+    /// The elastic law alone.
+    void ask_elastic(MembranePoint& point) const { ask_elastic_law(material_, fibres_, point); }
+
+private:
+    std::span<Effect* const> effects_;
+    const EffectContext& context_;
+    const MembraneMaterial& material_;
+    const Fibres& fibres_;
+    const Effect& without_;
+};
 
 /// All effects, in the order of effects.inl.
 std::span<const EffectInfo> effect_table();

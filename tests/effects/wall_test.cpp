@@ -89,6 +89,37 @@ TEST(Wall, ASlackWallBearsNothingUntilItIsStraight) {
     EXPECT_NEAR(point.at(0.9, 0.9).stress[0], elastic(0.9, 0.9).stress[0], 1e-9);
 }
 
+TEST(Wall, FoldsOfAWallWithAMemoryCloseWithTheTensionAndNotWithTheStrain) {
+    const auto slack = find_effect("slack")->make(std::vector<double>{0.02, 0.06});
+    const auto memory = find_effect("viscoelasticity")->make(std::vector<double>{0.25, 2.0, 1.0});
+    Effect* const effects[2] = {slack.get(), memory.get()};
+    for (Effect* effect : effects) effect->points(1);
+    EffectContext context;
+    Uniaxial at;
+    double strain = 0.0;  // Green's, of the wall between its folds
+    const auto folds = [&](double stress) {
+        EXPECT_TRUE(
+            uniaxial_rest([&](MembranePoint& p) { ask_membrane(effects, context, rubber, {}, p); }, 298.0, stress, at));
+        MembranePoint point;
+        point.c = Vec3(at.along * at.along, at.across * at.across, 0.0);
+        const double whole = 0.5 * (point.c[0] - 1.0);
+        ask_membrane(effects, context, rubber, {}, point);
+        for (Effect* effect : effects) effect->remember(context, point);
+        context.dt = 0.25;
+        strain = 0.5 * (point.c[0] - 1.0);
+        return whole - strain;
+    };
+    const double full = 0.94 * 0.02;
+    for (const double stress : {0.0, 5.0, 15.0, 15.0, 15.0, 5.0}) {
+        const double taken = folds(stress);
+        EXPECT_NEAR(taken, stress > 0.0 ? full : 0.0, 1e-9) << stress;
+    }
+    // They are straight from the stress on that the wall bears at `remnant` of the slack.
+    const double straight = 298.0 * 0.06 * 0.02, taken = folds(0.3 * straight);
+    EXPECT_NEAR(taken, 0.3 * full, 0.02 * full);
+    EXPECT_GT(strain, 0.004) << "what is left of the strain goes slowly";
+}
+
 TEST(Wall, CreepGoesWithTheLogarithmOfTimeAndStays) {
     Point point("creep", {0.05, 2.0, 2.0});
     // The elastic part is held: what is asked for grows by what has flowed.
