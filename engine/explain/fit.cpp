@@ -4,14 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "core/random.h"
 #include "explain/residual.h"
 #include "optimise/least_squares.h"
 
 namespace cathlab {
 namespace {
-
-constexpr std::size_t few = 2;  // base numbers
 
 /// Numbers that may be of any size between a trace and a mountain are searched by their logarithm:
 /// q = ln(1 + v / usual).
@@ -245,49 +242,6 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too, RigMemory*
     model.train_cost = cost_of(model);
 }
 
-FittedModel Fitter::begin(std::span<const EffectInfo* const> declared, const Workers& workers) {
-    FittedModel model;
-    model.base = rig_.start();
-    model.residual = rig_.residual(model.base, {});
-    const std::vector<Bound> bounds = rig_.bounds();
-    if (!bounds.empty()) {
-        // A search for angles has valleys: others begin around the first start, and the deepest is taken.
-        constexpr int others = 11;
-        constexpr double around = 0.06;  // of the ranges
-        weigh_by(model);
-        std::vector<FittedModel> tried(1 + others, model);
-        workers.for_ranges(tried.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                std::vector<double>& base = tried[k].base;
-                for (std::size_t j = 0; k > 0 && j < base.size(); ++j) {
-                    const Bound& b = bounds[j];
-                    const double shift = random_normal(1, RandomStream::optimiser, k - 1, j);
-                    base[j] = std::clamp(base[j] + around * shift * (b.upper - b.lower), b.lower, b.upper);
-                }
-                refit(tried[k], 15);
-            }
-        });
-        model = *std::min_element(tried.begin(), tried.end(), [](const FittedModel& a, const FittedModel& b) {
-            return a.train_cost < b.train_cost;
-        });
-    }
-    // The first fit sees large errors everywhere: its own scale, again and again until it stays.
-    constexpr int rounds = 4;
-    for (int k = 0; k < rounds; ++k) {
-        weigh_by(model);
-        const double before = model.train_cost;
-        refit(model, 40);
-        if (rig_.bounds().empty() || std::fabs(before - model.train_cost) < 1e-4 * model.train_cost) break;
-    }
-    for (const EffectInfo* effect : declared) {
-        weigh_by(model);
-        model = with(model, *effect);
-    }
-    weigh_by(model);
-    model.train_cost = cost_of(model);
-    return model;
-}
-
 bool Fitter::learn(const EffectInfo& effect) {
     const std::vector<double> base = rig_.start();
     const std::size_t count = effect.parameters.size();
@@ -333,7 +287,7 @@ bool Fitter::learn(const EffectInfo& effect) {
 }
 
 bool Fitter::quick() const {
-    return rig_.bounds().size() <= few && !rig_.bounds().empty() && !rig_.slow();
+    return rig_.bounds().size() <= few_numbers && !rig_.bounds().empty() && !rig_.slow();
 }
 
 std::vector<std::vector<double>> Fitter::starts(const FittedModel& from, const EffectInfo& effect) const {
@@ -417,7 +371,7 @@ FittedModel Fitter::beside(const FittedModel& from, const EffectTrial& trial) co
 
 FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) const {
     // Base numbers that are few go along from the beginning; where they are many, the effect looks where to go first.
-    const bool base_too = rig_.bounds().size() <= few;
+    const bool base_too = rig_.bounds().size() <= few_numbers;
     const bool shaped = quick();
     const std::size_t searched = rig_.slow() ? 1 : shaped ? 12 : 2;  // of each way
     std::vector<FittedModel> tried[2];
@@ -475,6 +429,10 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
         model.train_cost = cost_of(model);
     };
     if (!rig_.slow()) finish(best, rig_.bounds().empty() ? 30 : 15);
+    for (FittedModel& model : in_other_valleys(from, effect)) {
+        finish(model, 15);
+        take(best, model);
+    }
     if (own.effects.empty()) return best;
     // Numbers of their own have to pay for themselves [schwarz1978].
     settle_runs(own, effect);

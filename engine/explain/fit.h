@@ -9,6 +9,9 @@
 
 namespace cathlab {
 
+/// Base numbers that go along with an effect from the beginning; where they are more, it looks where to go first.
+inline constexpr std::size_t few_numbers = 2;
+
 struct FittedModel {
     std::vector<double> base;  ///< the rig's searched numbers
     std::vector<EffectTrial> effects;
@@ -81,11 +84,18 @@ private:
     /// What all recordings have alike takes the shape that suits most of them, which shows the others that they are
     /// wrong: sweeps and reversals by turns, until nothing helps.
     void settle_runs(FittedModel& model, const EffectInfo& effect) const;
+    /// Of the base models that were tried, best first: those that are nearly as good as the best and elsewhere.
+    void keep_valleys(std::span<const FittedModel> tried);
+    /// The effect where it begins best, beside base numbers of other valleys: it may be one of those that the world is
+    /// in, and the base model alone cannot tell.
+    std::vector<FittedModel> in_other_valleys(const FittedModel& from, const EffectInfo& effect) const;
     std::vector<std::vector<double>> starts(const FittedModel& from, const EffectInfo& effect) const;
 
     const Rig& rig_;
     double noise_;
     LossScale scale_;
+    std::vector<std::vector<double>>
+        valleys_;  ///< base numbers at which the base model is nearly as good as at its best
     std::map<const EffectInfo*, std::vector<bool>> free_;
 };
 
