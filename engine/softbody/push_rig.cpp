@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -10,6 +9,7 @@
 
 #include "core/check.h"
 #include "core/errors.h"
+#include "softbody/pressed_ball.h"
 #include "softbody/shell_statics.h"
 #include "softbody/tube.h"
 #include "softbody/wall_sample.h"
@@ -18,7 +18,6 @@ namespace cathlab {
 
 namespace {
 
-constexpr int parts = 5;                  // a triangle's edge is cut into so many for the contact's points
 constexpr double mesh_per_spacing = 0.4;  // edges of the fine surface, of the particles' spacing
 constexpr double growth = 0.3;            // of the spacing, a mm away from where the wall is looked at
 constexpr double force_tolerance_mn = 1e-2;
@@ -53,121 +52,6 @@ TriMesh cut_in_four(const TriMesh& mesh) {
     }
     return out;
 }
-
-/// Weights of the middles of parts^2 equal parts of a triangle.
-std::vector<Vec3> contact_points() {
-    std::vector<Vec3> out;
-    for (int i = 0; i < parts; ++i)
-        for (int j = 0; j < parts - i; ++j)
-            for (const double third : {1.0, 2.0}) {
-                if (third > 1.5 && j == parts - i - 1) continue;
-                const double a = (i + third / 3.0) / parts, b = (j + third / 3.0) / parts;
-                out.emplace_back(1.0 - a - b, a, b);
-            }
-    return out;
-}
-
-/// The ball's push: potential, forces, stiffness; `total` is its force on the wall.
-class Ball {
-public:
-    Ball(const ShellModel& shell, const Vec3& centre, double radius, double near, double young_kpa, double thickness_mm)
-        : shell_(shell),
-          centre_(centre),
-          radius_(radius),
-          near_(near),
-          young_kpa_(young_kpa),
-          thickness_mm_(thickness_mm),
-          points_(contact_points()) {}
-
-    double operator()(std::span<const Vec3> x, std::span<Vec3> force, std::vector<Eigen::Triplet<double>>& stiffness,
-                      Vec3& total) const {
-        double potential = 0.0;
-        total.setZero();
-        for (const ShellTriangle& t : shell_.triangles) {
-            std::array<Vec3, 3> corner;
-            for (int k = 0; k < 3; ++k) corner[static_cast<std::size_t>(k)] = x[at(t.corner[k])];
-            if ((corner[0] - centre_).norm() > radius_ + near_) continue;
-            const double area = t.area_mm2 / static_cast<double>(points_.size());
-            std::array<Mat3, 6> block;  // corners 0 0, 1 0, 1 1, 2 0, 2 1, 2 2
-            bool touched = false;
-            const Vec3 outward = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-            for (const Vec3& w : points_) {
-                const Vec3 off = w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2] - centre_;
-                if (!(off.squaredNorm() < radius_ * radius_)) continue;
-                // A point that went past the centre is pushed back over it, not on.
-                const double side = off.dot(outward) < 0.0 ? -1.0 : 1.0;
-                const double distance = side * off.norm();
-                if (distance == 0.0) continue;
-                const Pressed bed = pressed(radius_ - distance);
-                const Vec3 normal = off / distance, push = area * bed.pressure_kpa * normal;
-                potential += area * bed.energy_kpa_mm;
-                total += push;
-                if (!touched) block.fill(Mat3::Zero());
-                touched = true;
-                const Mat3 stiff = area * bed.slope_kpa_per_mm * normal * normal.transpose();
-                for (int i = 0, at_block = 0; i < 3; ++i) {
-                    force[at(t.corner[i])] += w[i] * push;
-                    for (int j = 0; j <= i; ++j, ++at_block)
-                        block[static_cast<std::size_t>(at_block)] += w[i] * w[j] * stiff;
-                }
-            }
-            if (!touched) continue;
-            for (int i = 0; i < 3; ++i)
-                for (int j = 0; j < 3; ++j)
-                    for (int r = 0; r < 3; ++r)
-                        for (int c = 0; c < 3; ++c)
-                            stiffness.emplace_back(
-                                static_cast<int>(3 * t.corner[i] + r), static_cast<int>(3 * t.corner[j] + c),
-                                block[static_cast<std::size_t>(std::max(i, j) * (std::max(i, j) + 1) / 2 +
-                                                               std::min(i, j))](r, c));
-        }
-        return potential;
-    }
-
-    /// Whether the ball's centre is on the inner side of the wall that is nearest to it.
-    bool inside(std::span<const Vec3> x) const {
-        double nearest = radius_;
-        bool out = true;
-        for (const ShellTriangle& t : shell_.triangles) {
-            std::array<Vec3, 3> corner;
-            for (int k = 0; k < 3; ++k) corner[static_cast<std::size_t>(k)] = x[at(t.corner[k])];
-            if ((corner[0] - centre_).norm() > radius_ + near_) continue;
-            const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-            for (const Vec3& w : points_) {
-                const Vec3 off = w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2] - centre_;
-                if (off.norm() >= nearest) continue;
-                nearest = off.norm();
-                out = off.dot(normal) > 0.0;
-            }
-        }
-        return out;
-    }
-
-private:
-    struct Pressed {
-        double pressure_kpa = 0.0, slope_kpa_per_mm = 0.0, energy_kpa_mm = 0.0;
-    };
-    /// The bed pressed by a depth > 0: what is left of its thickness is l of it,
-    ///     p = E/3 (l^-2 - l),   l = 1 - depth / t,
-    /// a neo-Hookean bar's; on in a straight line where less than least_left is left.
-    Pressed pressed(double depth) const {
-        constexpr double least_left = 0.2;
-        const double e = young_kpa_ / 3.0, l = std::max(1.0 - depth / thickness_mm_, least_left);
-        const double beyond = depth - (1.0 - l) * thickness_mm_;
-        Pressed out;
-        out.slope_kpa_per_mm = e / thickness_mm_ * (2.0 / (l * l * l) + 1.0);
-        const double at_l = e * (1.0 / (l * l) - l);
-        out.pressure_kpa = at_l + out.slope_kpa_per_mm * beyond;
-        out.energy_kpa_mm = e * thickness_mm_ * (1.0 / l - 1.0 - 0.5 * (1.0 - l * l)) +
-                            beyond * (at_l + 0.5 * out.slope_kpa_per_mm * beyond);
-        return out;
-    }
-
-    const ShellModel& shell_;
-    Vec3 centre_;
-    double radius_, near_, young_kpa_, thickness_mm_;
-    std::vector<Vec3> points_;
-};
 
 /// A point that rides on a triangle: by its weights on the corners, and a height along their normals.
 class Marker {
@@ -299,7 +183,9 @@ PushResult PushedWall::push(const Push& push, const std::function<bool()>& go_on
 class PushedWall::Sample {
 public:
     Sample(const PushedWall& wall, const PushedLaw& law) : wall_(wall), law_(law) {
-        slipped_.assign(wall.rest_.size(), Vec3::Zero());
+        bonds_.resize(law.slip ? wall.rest_.size() : 0);
+        held_ = wall.fixed_;
+        if (law.slip) std::fill(held_.begin(), held_.end(), std::uint8_t{0});  // their bonds hold them
         rest_.force_tolerance_mn = force_tolerance_mn;
         rest_.most_iterations = most_iterations;
         rest_.fibres = law.fibres;
@@ -316,15 +202,8 @@ public:
     /// Searches use these, or their own where there are none.
     void use(ShellFactors* factors) { rest_.factors = factors != nullptr ? factors : &factors_; }
 
-    /// The way of particle i, from a guess: held ones go along as far as they slip.
-    void go(std::size_t i, const Vec3& way, std::vector<Vec3>& x) {
-        if (!wall_.fixed_[i]) {
-            x[i] += way;
-        } else if (law_.slip) {
-            slipped_[i] += way;
-            x[i] = wall_.rest_[i] + slipped_[i];
-        }
-    }
+    /// Whether particle i goes nowhere.
+    bool stands(std::size_t i) const { return held_[i] != 0; }
 
     /// As settle(); where that finds no rest, the ball takes the way from `before` in small parts.
     bool solve(const Vec3& before, const Vec3& centre, const std::vector<Vec3>& from, std::vector<Vec3>& x,
@@ -332,8 +211,6 @@ public:
         bool found = settle(centre, x, total);
         for (int tries = 0, count = 4; !found && tries < 2; ++tries, count *= 4) {
             x = from;
-            for (std::size_t i = 0; i < x.size(); ++i)
-                if (wall_.fixed_[i]) slipped_[i] = x[i] - wall_.rest_[i];
             rest_.factors->usable = false;
             found = true;
             for (int k = 1; k <= count && found; ++k)
@@ -344,24 +221,31 @@ public:
     }
 
 private:
-    static constexpr int most_rounds = 12;
+    static constexpr int most_rounds = 20;
     static constexpr int most_iterations = 200, most_with_a_law = 60;
-    static constexpr double still_mm = 4e-3;
+    static constexpr double still_mm = 1e-3;
+
+    /// What holds a particle, as its law is about where the wall pulls now: traction = pull + spring (slipped - slip).
+    struct Bond {
+        Vec3 pull = Vec3::Zero(), slip = Vec3::Zero();
+        Mat3 spring = Mat3::Identity();  ///< kPa/mm
+    };
 
     /// Moves x to rest; total: the ball's force.
     bool settle(const Vec3& centre, std::vector<Vec3>& x, Vec3& total) {
-        const Ball ball(wall_.shell_, centre, wall_.ball_radius_mm_, 4.0 * wall_.spacing_mm_, wall_.young_kpa_,
-                        wall_.thickness_mm_);
+        const PressedBall ball(wall_.shell_, centre, wall_.ball_radius_mm_, 4.0 * wall_.spacing_mm_, wall_.young_kpa_,
+                               wall_.thickness_mm_);
         const ShellLoad load = [&](std::span<const Vec3> at_x, std::span<Vec3> force,
                                    std::vector<Eigen::Triplet<double>>& stiffness) {
-            return ball(at_x, force, stiffness, total) + surround(at_x, force, stiffness);
+            return ball(at_x, force, stiffness, total) + surround(at_x, force, stiffness) +
+                   hold(at_x, force, stiffness);
         };
-        for (int round = 0;; ++round) {
-            if (!shell_equilibrium(wall_.shell_, wall_.fixed_, load, x, rest_)) return false;
-            if (!law_.slip) break;
-            const double moved = let_slip(x);
-            if (round >= most_rounds || moved < still_mm) break;
+        for (int round = 0; law_.slip; ++round) {
+            const double off = tie(x, load);
+            if (round > 0 && off < still_mm) break;
+            if (round == most_rounds || !shell_equilibrium(wall_.shell_, held_, load, x, rest_)) return false;
         }
+        if (!law_.slip && !shell_equilibrium(wall_.shell_, held_, load, x, rest_)) return false;
         return ball.inside(x);  // a wall that jumped over the ball is at rest as well
     }
 
@@ -375,7 +259,7 @@ private:
             }
         if (law_.slip && law_.remember_slip)
             for (std::size_t i = 0; i < x.size(); ++i)
-                if (wall_.fixed_[i]) law_.remember_slip(i, traction(i));
+                if (wall_.fixed_[i]) law_.remember_slip(i, bonds_[i].pull);
     }
 
     double surround(std::span<const Vec3> x, std::span<Vec3> force,
@@ -404,27 +288,60 @@ private:
         return {t.mu_kpa, t.thinning, t.round};
     }
 
-    Vec3 traction(std::size_t i) const { return pull_[i] / (wall_.thickness_mm_ * std::sqrt(wall_.area_mm2_[i])); }
+    double section_mm2(std::size_t i) const { return wall_.thickness_mm_ * std::sqrt(wall_.area_mm2_[i]); }
 
-    /// What holds the wall goes towards where its law says, as far as is stable; how far it still has to go.
-    double let_slip(std::vector<Vec3>& x) {
-        pull_.assign(x.size(), Vec3::Zero());
+    /// The bonds on the particles that they hold.
+    double hold(std::span<const Vec3> x, std::span<Vec3> force, std::vector<Eigen::Triplet<double>>& stiffness) const {
+        double potential = 0.0;
+        for (std::size_t i = 0; i < bonds_.size(); ++i) {
+            if (!wall_.fixed_[i]) continue;
+            const Bond& bond = bonds_[i];
+            const Vec3 slipped = x[i] - wall_.rest_[i], off = slipped - bond.slip;
+            const double section = section_mm2(i);
+            potential += section * (bond.pull.dot(slipped) + 0.5 * off.dot(bond.spring * off));
+            force[i] -= section * (bond.pull + bond.spring * off);
+            for (int r = 0; r < 3; ++r)
+                for (int c = 0; c < 3; ++c)
+                    stiffness.emplace_back(static_cast<int>(3 * i) + r, static_cast<int>(3 * i) + c,
+                                           section * bond.spring(r, c));
+        }
+        return potential;
+    }
+
+    /// The law of the bonds about what pulls at them at x; how far, at most, one stands beside it.
+    double tie(const std::vector<Vec3>& x, const ShellLoad& load) {
+        // A bond that does not give way is this much stiffer than what it holds.
+        constexpr double stiffer = 100.0, part = 1e-3, least_kpa = 1e-3;
+        std::vector<Vec3> pull(x.size(), Vec3::Zero());
+        std::vector<Eigen::Triplet<double>> unused;
+        load(x, pull, unused);
         if (rest_.law)
-            add_shell_forces(wall_.shell_, x, pull_, rest_.law);
+            add_shell_forces(wall_.shell_, x, pull, rest_.law);
         else
-            add_shell_forces(wall_.shell_, x, pull_, law_.fibres);
+            add_shell_forces(wall_.shell_, x, pull, law_.fibres);
         double far = 0.0;
         for (std::size_t i = 0; i < x.size(); ++i) {
             if (!wall_.fixed_[i]) continue;
-            constexpr double part = 0.01;
-            const Vec3 pulled = traction(i), wanted = law_.slip(i, pulled);
-            const double size = part * pulled.norm();
-            const double gain = size > 0.0 ? (law_.slip(i, (1.0 + part) * pulled) - wanted).norm() / size : 0.0;
-            const double stiff = wall_.holding_[i] / (wall_.thickness_mm_ * std::sqrt(wall_.area_mm2_[i]));
-            const Vec3 go = (wanted - slipped_[i]) / (1.0 + gain * stiff);
-            slipped_[i] += go;
-            x[i] = wall_.rest_[i] + slipped_[i];
-            far = std::max(far, go.norm());
+            Bond& bond = bonds_[i];
+            const double section = section_mm2(i);
+            const Vec3 slipped = x[i] - wall_.rest_[i];
+            // What is left of the forces, beside what the bond holds already.
+            bond.pull = pull[i] / section + bond.pull + bond.spring * (slipped - bond.slip);
+            bond.slip = law_.slip(i, bond.pull);
+            far = std::max(far, (slipped - bond.slip).norm());
+            const double change = part * bond.pull.norm() + least_kpa;
+            Mat3 give;  // mm/kPa
+            for (int axis = 0; axis < 3; ++axis) {
+                Vec3 more = bond.pull;
+                more[axis] += change;
+                give.col(axis) = (law_.slip(i, more) - bond.slip) / change;
+            }
+            const double least = section / (stiffer * wall_.holding_[i]);
+            const Eigen::SelfAdjointEigenSolver<Mat3> axes(0.5 * (give + give.transpose()));
+            const Mat3 spring = axes.eigenvectors() * axes.eigenvalues().cwiseMax(least).cwiseInverse().asDiagonal() *
+                                axes.eigenvectors().transpose();
+            if ((spring - bond.spring).norm() > 0.5 * bond.spring.norm()) rest_.factors->usable = false;
+            bond.spring = spring;
         }
         return far;
     }
@@ -433,7 +350,8 @@ private:
     const PushedLaw& law_;
     ShellFactors factors_;
     ShellRest rest_;
-    std::vector<Vec3> slipped_, pull_;
+    std::vector<std::uint8_t> held_;
+    std::vector<Bond> bonds_;  // (n) where something slips
 };
 
 PushResult PushedWall::push(const Push& push, const PushedLaw& law, const std::function<bool()>& go_on) const {
@@ -468,7 +386,8 @@ PushResult PushedWall::push(const Push& push, const PushedLaw& law, const std::f
         const std::vector<Vec3> before = x;
         if (k < push.guess.size()) {  // the way that the guess takes, from where the wall is
             const std::vector<Vec3>& from = k > 0 ? push.guess[last] : rest_;
-            for (std::size_t i = 0; i < x.size(); ++i) sample.go(i, push.guess[k][i] - from[i], x);
+            for (std::size_t i = 0; i < x.size(); ++i)
+                if (!sample.stands(i)) x[i] += push.guess[k][i] - from[i];
         }
         if (k < push.factors.size()) {
             if (!push.factors[k]) push.factors[k] = std::make_shared<ShellFactors>();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/errors.h"
 #include "softbody/held_tube.h"
@@ -97,6 +98,32 @@ TEST(PushRig, TissueRoundTheWallPushesBackTheHarderTheStifferItIs) {
         const PushResult result = wall.push(outward(2.0), law);
         ASSERT_TRUE(result.at_rest);
         EXPECT_GT(result.force_mn.back(), last) << support;
+        last = result.force_mn.back();
+    }
+}
+
+TEST(PushRig, WhatHoldsTheWallStandsWhereItsLawSaysHoweverFarItGives) {
+    const PushedWall wall(held_tube(60.0));
+    Push push = outward(2.0);
+    push.ball_mm.insert(push.ball_mm.begin(), Vec3(9.0, 0.0, 30.0));  // touches nothing
+    push.keep_wall = true;
+    double last = wall.push(push).force_mn.back();
+    for (const double mm_per_kpa : {0.002, 0.02, 0.2}) {
+        std::map<std::size_t, Vec3> pull;
+        PushedLaw law;
+        law.slip = [=](std::size_t, const Vec3& traction) { return Vec3(mm_per_kpa * traction); };
+        law.remember_slip = [&](std::size_t i, const Vec3& traction) { pull[i] = traction; };
+        const PushResult result = wall.push(push, law);
+        ASSERT_TRUE(result.at_rest);
+        ASSERT_FALSE(pull.empty());
+        double farthest = 0.0;
+        for (const auto& [i, traction] : pull) {
+            const Vec3 slipped = result.wall_mm.back()[i] - result.wall_mm.front()[i];
+            EXPECT_LT((slipped - mm_per_kpa * traction).norm(), 2e-3) << mm_per_kpa;
+            farthest = std::max(farthest, slipped.norm());
+        }
+        EXPECT_GT(farthest, 0.02) << mm_per_kpa;
+        EXPECT_LT(result.force_mn.back(), last) << mm_per_kpa;
         last = result.force_mn.back();
     }
 }
