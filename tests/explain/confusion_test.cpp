@@ -58,6 +58,13 @@ TEST(Confusion, TheMissingEffectOfAWallIsNamed) {
     }
 }
 
+TEST(Confusion, TheMissingEffectOfAPushedTubeIsNamed) {
+    const Explanation found = explained({"wall-contact", "tissue-support", 2, 100, 64});
+    EXPECT_EQ(named(found), "tissue-support");
+    EXPECT_EQ(found.verdict, Verdict::explained);
+    EXPECT_LE(found.held_out_after, 1.15 * 0.1);
+}
+
 TEST(Confusion, NothingIsNamedWhereNothingActs) {
     for (const char* kind : {"catheter-tip", "heart-motion"})
         EXPECT_EQ(named(explained({kind, "", 1, 12, 800})), "nothing missing") << kind;
@@ -87,6 +94,7 @@ struct Cell {
 
 int rows_of(const std::string& kind) {
     if (kind == "wall-tension") return 640;
+    if (kind == "wall-contact") return 160;
     return kind == "tendon-tip" ? 800 : 1200;
 }
 
@@ -140,7 +148,7 @@ TEST(Confusion, DISABLED_WholeMatrix) {
     const std::string only_kind = wish("CATHLAB_MATRIX_KIND", ""), only = wish("CATHLAB_MATRIX_EFFECT", "");
     std::vector<Cell> cells;
     for (int seed = 0; seed < seeds; ++seed)
-        for (const std::string kind : {"catheter-tip", "heart-motion", "wall-tension", "tendon-tip"}) {
+        for (const std::string kind : {"catheter-tip", "heart-motion", "wall-tension", "tendon-tip", "wall-contact"}) {
             if (!only_kind.empty() && kind != only_kind) continue;
             const auto add = [&](const std::string& effect, int strength, int number) {
                 if (!only.empty() && (effect.empty() ? "clean" : effect) != only) return;
@@ -169,7 +177,7 @@ TEST(Confusion, DISABLED_WholeMatrix) {
             }
         });
     for (std::thread& worker : workers) worker.join();
-    for (const std::string kind : {"catheter-tip", "heart-motion", "wall-tension", "tendon-tip"}) {
+    for (const std::string kind : {"catheter-tip", "heart-motion", "wall-tension", "tendon-tip", "wall-contact"}) {
         std::map<std::string, std::vector<const Cell*>> rows;
         for (const Cell& cell : cells)
             if (cell.recipe.kind == kind)

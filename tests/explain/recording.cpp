@@ -176,6 +176,7 @@ std::unique_ptr<Folder> record_tension(const Recipe& r) {
 std::unique_ptr<Folder> record(const Recipe& recipe) {
     if (recipe.kind == "wall-tension") return record_tension(recipe);
     if (recipe.kind == "tendon-tip") return record_tendons(recipe);
+    if (recipe.kind == "wall-contact") return record_contact(recipe);
     return recipe.kind == "heart-motion" ? record_heart(recipe) : record_catheter(recipe);
 }
 
@@ -192,8 +193,12 @@ const std::vector<std::string>& known_effects(const std::string& kind) {
     static const std::vector<std::string> tendons{
         "backlash",       "hysteresis",   "actuation-lag",   "segment-coupling", "tendon-routing", "rest-memory",
         "sensor-latency", "sensor-drift", "curvature-taper", "field-distortion", "tendon-stretch"};
+    static const std::vector<std::string> contact{"tissue-support", "boundary-slip", "stiffening", "viscoelasticity",
+                                                  "creep",          "softening",     "slack",      "registration",
+                                                  "sensor-latency", "sensor-drift"};
     if (kind == "wall-tension") return tension;
     if (kind == "tendon-tip") return tendons;
+    if (kind == "wall-contact") return contact;
     return kind == "heart-motion" ? heart : catheter;
 }
 
@@ -205,8 +210,10 @@ const std::vector<std::string>& effect_pairs(const std::string& kind) {
     static const std::vector<std::string> tension{"viscoelasticity+slack", "softening+boundary-slip"};
     static const std::vector<std::string> tendons{"backlash+sensor-drift", "segment-coupling+field-distortion",
                                                   "rest-memory+curvature-taper"};
+    static const std::vector<std::string> contact{"tissue-support+viscoelasticity", "softening+sensor-drift"};
     if (kind == "wall-tension") return tension;
     if (kind == "tendon-tip") return tendons;
+    if (kind == "wall-contact") return contact;
     return kind == "heart-motion" ? heart : catheter;
 }
 

@@ -12,7 +12,7 @@ namespace explain_test {
 
 /// One made data set.  strength: 1 = weak but well above the noise, 2 = strong.
 struct Recipe {
-    std::string kind;  ///< "catheter-tip", "heart-motion", "wall-tension" or "tendon-tip"
+    std::string kind;  ///< "catheter-tip", "heart-motion", "wall-tension", "tendon-tip" or "wall-contact"
     /// "" = nothing acts; an effect's name; two of them, "a+b"; or one that no manifest holds: "vibration", "step",
     /// "outliers", "grip-slip"
     std::string effect;

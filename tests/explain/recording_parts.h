@@ -14,6 +14,7 @@ namespace explain_test {
 
 std::unique_ptr<Folder> record_catheter(const Recipe& r);
 std::unique_ptr<Folder> record_tendons(const Recipe& r);
+std::unique_ptr<Folder> record_contact(const Recipe& r);
 
 /// Whether an effect acts in a recording; two are written "a+b".
 inline bool acts_in(const Recipe& r, const std::string& effect) {
