@@ -13,10 +13,12 @@
 namespace cathlab {
 namespace {
 
-// Models are searched on particles so far apart; what that costs is known of the base model, which is solved on finer
-// ones too, and taken off every model in proportion.
+// Models are searched on particles so far apart; what that costs is known of one of them, at first the base model,
+// which is solved on finer ones too, and taken off every model in proportion.  Those in the middle only say how much is
+// left.
 constexpr double spacing_mm = 4.0, far_spacing_mm = 9.0;
-constexpr double fine_spacing_mm = 2.5, fine_far_spacing_mm = 6.0;
+constexpr double middle_spacing_mm = 2.5, middle_far_spacing_mm = 6.0;
+constexpr double fine_spacing_mm = 1.5, fine_far_spacing_mm = 3.5;
 
 // Factors kept of every sample's matrix are some MB each.
 constexpr std::size_t most_factors = 400;
@@ -49,13 +51,17 @@ public:
             pushes_[run].keep_wall = true;
             plain_.push_back(rest_of(run, walls_[run]));
             pushes_[run].keep_wall = false;
+            middle_.push_back(rest_of(run, wall_of(run, middle_spacing_mm, middle_far_spacing_mm)));
             fine_.push_back(rest_of(run, wall_of(run, fine_spacing_mm, fine_far_spacing_mm)));
         }
+        about_ = plain_;
+        about_fine_ = fine_;
     }
 
     bool slow() const override { return true; }
 
-    /// What finer particles change of it: those finer still, and a solid wall in place of a shell, may change as much.
+    /// What the finest particles change of those in the middle: finer ones still, and a solid wall in place of a shell,
+    /// may change as much.
     std::vector<double> own_error() const override {
         std::vector<double> out;
         for (const DataColumn* column : measured_) {
@@ -64,14 +70,32 @@ public:
                 for (std::size_t k = 0; k < pushes_[run].ball_mm.size(); ++k) {
                     const double off =
                         column->quantity == "force"
-                            ? fine_[run].force_mn[k] - plain_[run].force_mn[k]
-                            : (fine_[run].marker_mm[k] - plain_[run].marker_mm[k])[column->quantity.back() - 'x'];
+                            ? fine_[run].force_mn[k] - middle_[run].force_mn[k]
+                            : (fine_[run].marker_mm[k] - middle_[run].marker_mm[k])[column->quantity.back() - 'x'];
                     square += off * off;
                     samples += 1.0;
                 }
             out.push_back(std::sqrt(square / samples));
         }
         return out;
+    }
+
+    void anchor(std::span<const EffectTrial> trials, const Workers& workers) override {
+        about_ = plain_;
+        about_fine_ = fine_;
+        if (!RigEffects(trials).uses(of_wall)) return;
+        std::vector<PushResult> coarse(pushes_.size()), fine(pushes_.size());
+        workers.for_ranges(pushes_.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t run = begin; run < end; ++run) {
+                RigEffects effects(trials);
+                coarse[run] = pushed(effects, run, nullptr);
+                fine[run] = pushed_on(wall_of(run, fine_spacing_mm, fine_far_spacing_mm), effects, run, pushes_[run]);
+            }
+        });
+        const auto rests = [](const PushResult& result) { return result.at_rest; };
+        if (!std::all_of(coarse.begin(), coarse.end(), rests) || !std::all_of(fine.begin(), fine.end(), rests)) return;
+        about_ = std::move(coarse);
+        about_fine_ = std::move(fine);
     }
 
     std::unique_ptr<RigMemory> memory() const override {
@@ -106,11 +130,12 @@ public:
                 double force = fine_[run].force_mn[k];
                 if (walled && !at_rest) place.setConstant(std::numeric_limits<double>::quiet_NaN());
                 if (walled && at_rest) {
-                    const Vec3 &coarse = plain_[run].marker_mm[k], &rest = pushes_[run].marker_mm;
-                    const double moved = part_of((own.marker_mm[k] - rest).norm(), (coarse - rest).norm());
-                    place = own.marker_mm[k] + moved * (place - coarse);
-                    const double pushed = part_of(own.force_mn[k], plain_[run].force_mn[k]);
-                    force = own.force_mn[k] + pushed * (force - plain_[run].force_mn[k]);
+                    const PushResult &coarse = about_[run], &fine = about_fine_[run];
+                    const Vec3& rest = pushes_[run].marker_mm;
+                    const double moved = part_of((own.marker_mm[k] - rest).norm(), (coarse.marker_mm[k] - rest).norm());
+                    place = own.marker_mm[k] + moved * (fine.marker_mm[k] - coarse.marker_mm[k]);
+                    const double pushed = part_of(own.force_mn[k], coarse.force_mn[k]);
+                    force = own.force_mn[k] + pushed * (fine.force_mn[k] - coarse.force_mn[k]);
                 }
                 if (!place.allFinite()) {  // came to no rest: as bad as a wall that does not move
                     place = pushes_[run].marker_mm + Vec3::Constant(no_rest_mm);
@@ -139,7 +164,7 @@ public:
 private:
     static constexpr double no_rest_mm = 20.0;
 
-    /// How much of what finer particles change of the base model they change of another one: as much more or less as
+    /// How much of what finer particles change of one model they change of another one: as much more or less as
     /// that one moves.
     static double part_of(double own, double plain) {
         constexpr double most = 3.0, nothing = 1e-3;
@@ -168,8 +193,23 @@ private:
     }
 
     PushResult pushed(RigEffects& effects, std::size_t run, Memory* memory) const {
+        Push push = pushes_[run];
+        push.guess = plain_[run].wall_mm;
+        if (memory == nullptr) return pushed_on(walls_[run], effects, run, push);
+        push.keep_wall = true;
+        push.guess = memory->wall[run];
+        push.factors = memory->factors[run];
+        PushResult out = pushed_on(walls_[run], effects, run, push);
+        if (out.at_rest)
+            memory->wall[run] = std::move(out.wall_mm);
+        else
+            memory->wall[run] = plain_[run].wall_mm;
+        return out;
+    }
+
+    PushResult pushed_on(const PushedWall& wall, RigEffects& effects, std::size_t run, const Push& push) const {
         effects.begin_run(static_cast<Index>(run));
-        effects.points(walls_[run].triangles());
+        effects.points(wall.triangles());
         PushedLaw law;
         law.begin = [&](std::size_t k) { effects.next_row(data_.time_s[first_[run] + k]); };
         law.fibres = effects.fibres();
@@ -196,25 +236,16 @@ private:
                 effects.remember_slip(held(i, traction));
             };
         }
-        Push push = pushes_[run];
-        push.guess = plain_[run].wall_mm;
-        if (memory == nullptr) return walls_[run].push(push, law);
-        push.keep_wall = true;
-        push.guess = memory->wall[run];
-        push.factors = memory->factors[run];
-        PushResult out = walls_[run].push(push, law);
-        if (out.at_rest)
-            memory->wall[run] = std::move(out.wall_mm);
-        else
-            memory->wall[run] = plain_[run].wall_mm;
-        return out;
+        return wall.push(push, law);
     }
 
-    std::vector<PushedWall> walls_;   // (runs) dense where each is pushed
-    std::vector<Push> pushes_;        // (runs)
-    std::vector<std::size_t> first_;  // (runs) row
-    std::vector<PushResult> plain_;   // (runs) of the base model on them
-    std::vector<PushResult> fine_;    // (runs) of the base model on finer ones
+    std::vector<PushedWall> walls_;               // (runs) dense where each is pushed
+    std::vector<Push> pushes_;                    // (runs)
+    std::vector<std::size_t> first_;              // (runs) row
+    std::vector<PushResult> plain_;               // (runs) of the base model on them
+    std::vector<PushResult> middle_;              // (runs) of the base model on finer ones
+    std::vector<PushResult> fine_;                // (runs) and on the finest
+    std::vector<PushResult> about_, about_fine_;  // (runs) of the model by which others are corrected
 };
 
 }  // namespace

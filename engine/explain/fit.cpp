@@ -313,12 +313,14 @@ std::vector<std::vector<double>> Fitter::starts(const FittedModel& from, const E
             if (sign > 0.0 || (turned && !swings)) levels.push_back(values);
         }
     }
-    // What only shapes it may matter as much as its strength.
-    if (period == effect.parameters.size() && !rig_.slow()) {
+    // What only shapes it may matter as much as its strength.  Where a model takes seconds other shapes are looked at
+    // in one strength alone.
+    if (period == effect.parameters.size()) {
         const std::size_t plain = levels.size();
         for (int other = 1;; ++other) {
             std::vector<double> any;
-            for (std::size_t level = 0; level < plain; ++level) {
+            for (std::size_t level = rig_.slow() ? plain / 2 : 0; level < (rig_.slow() ? plain / 2 + 1 : plain);
+                 ++level) {
                 std::vector<double> values = levels[level];
                 if (!reshape(effect, free, other, quick(), values)) break;
                 any = values;

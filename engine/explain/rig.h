@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/parallel.h"
 #include "effects/effect.h"
 #include "explain/dataset.h"
 #include "explain/split.h"
@@ -78,6 +79,10 @@ public:
 
     /// Whether one model takes seconds: searches are then short.
     virtual bool slow() const { return false; }
+
+    /// A rig that corrects its models by what a finer one says of a single one: from now on by what it says of this.
+    /// Not while other threads ask it.
+    virtual void anchor(std::span<const EffectTrial> /*effects*/, const Workers& /*workers*/) {}
 
     /// By how much the base model itself is known to be off, root mean square a measured column; empty = it is exact.
     virtual std::vector<double> own_error() const { return {}; }

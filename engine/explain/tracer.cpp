@@ -178,13 +178,24 @@ private:
         // Those that are far behind the best will not overtake it.
         const double before = mean_cost(kept_[0].residual, split_, 1, fitter_.scale());
         const double enough = before - 0.5 * (before - promising[0]->held_out_cost);
-        if (!accepted.empty()) best_ = accepted[0]->model;
+        if (!accepted.empty()) {
+            anchor_at(accepted[0]->model);
+            best_ = accepted[0]->model;
+        }
         std::vector<FittedModel> next;
         for (std::size_t k = 0; k < std::min(rig_->slow() ? std::size_t{1} : kept_models, promising.size()); ++k)
             if (promising[k]->held_out_cost <= enough) next.push_back(std::move(promising[k]->model));
         kept_ = std::move(next);
         const double left = rms_of(best_.residual, split_, 1);
         return !(left <= floor_factor * std::hypot(data_.sensor_noise, out_.model_error));  // explained
+    }
+
+    /// What the rig corrects, it corrects about this model from now on.
+    void anchor_at(FittedModel& model) {
+        if (!rig_->slow()) return;
+        rig_->anchor(model.effects, workers_);
+        model.residual = rig_->residual(model.base, model.effects);
+        fitter_.refit(model, 6);
     }
 
     void fit_all(std::vector<Child>& children) {
@@ -245,6 +256,17 @@ private:
             if (b * b - a * a > own_error_[c] * own_error_[c]) return true;
         }
         return false;
+    }
+
+    /// What was measured beside the columns that are judged, a force: what is left of it is noise, or not more than
+    /// twice what the base model is off.
+    bool others_are_noise(const Columns& residual) const {
+        constexpr double more = 2.0;
+        for (std::size_t c = split_.judged; split_.judged > 0 && c < own_error_.size(); ++c)
+            if (rms(residual[c], split_.held_out, 1) >
+                more * std::hypot(own_error_[c], noise_by_differences(residual[c], data_.run)))
+                return false;
+        return true;
     }
 
     /// A sine that hardly comes round once within a recording is no oscillation: any curve is like a part of it.
@@ -396,7 +418,8 @@ private:
         out_.estimated_noise = noise_of(data_, best.residual, split_.judged);
         out_.noise_floor = data_.sensor_noise > 0.0 ? data_.sensor_noise : out_.estimated_noise;
         fitter_.weigh_by(best);
-        const bool noise_only = out_.held_out_after <= floor_factor * std::hypot(out_.noise_floor, out_.model_error);
+        const bool noise_only = out_.held_out_after <= floor_factor * std::hypot(out_.noise_floor, out_.model_error) &&
+                                others_are_noise(best.residual);
         if (out_.effects.empty())
             out_.verdict = noise_only ? Verdict::nothing_missing : Verdict::unexplained;
         else

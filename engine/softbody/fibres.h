@@ -15,7 +15,7 @@ namespace cathlab {
 
 struct Fibres {
     double stiffness_kpa = 0.0;  ///< k1 of each family, >= 0; 0 = no fibres
-    double exponent = 1.0;       ///< k2, > 0
+    double exponent = 1.0;       ///< k2, >= 0; 0 = a straight line
     double angle_deg = 0.0;      ///< from the circumference, 0 to 90
     double dispersion = 0.0;     ///< kappa: 0 = all along a, 1/2 = every direction of the plane alike
     double onset = 0.0;          ///< E at which the crimp is pulled out, >= 0
@@ -49,7 +49,9 @@ inline double fibre_energy(const Fibres& f, double e) {
     const double limit = std::sqrt(fibre_exponent_limit / f.exponent), held = e < limit ? e : limit;
     const FibreTension at = fibre_tension(f, held);
     const double beyond = e - held;
-    return f.stiffness_kpa / (2.0 * f.exponent) * (det::exp(f.exponent * held * held) - 1.0) +
+    constexpr double straight = 1e-9;
+    return (f.exponent > straight ? f.stiffness_kpa / (2.0 * f.exponent) * (det::exp(f.exponent * held * held) - 1.0)
+                                  : 0.5 * f.stiffness_kpa * held * held) +
            beyond * (at.tension + 0.5 * at.slope * beyond);
 }
 
