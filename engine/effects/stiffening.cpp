@@ -25,7 +25,7 @@ EffectInfo stiffening_effect() {
         .for_tests = false,
         .applies_to = {"wall-tension", "wall-contact"},
         .parameters = {{"fibre_kpa", "kPa", 20.0, 0.0, 1e5, "k1 of each of the two families; 0 = none"},
-                       {"exponent", "1", 1.0, 0.0, 1000.0, "k2: how steeply they stiffen; 0 = not at all"},
+                       {"exponent", "1", 1.0, 0.01, 1000.0, "k2: how steeply they stiffen"},
                        {"angle_deg", "deg", 7.0, 0.0, 90.0, "of the families, from the vessel's circumference"},
                        {"dispersion", "1", 0.0, 0.0, 0.5, "kappa: 0 = all along the angle, 1/2 = every way alike"},
                        {"onset", "1", 0.0, 0.0, 2.0, "strain H : C - 1 at which the crimp is pulled out"}},

@@ -137,11 +137,16 @@ Result minimise_squares(const LeastSquaresProblem& problem, const LeastSquaresOp
     if (problem.residual(x, residual)) result.value = half_square();
     if (free.empty() || problem.residuals == 0 || !std::isfinite(result.value)) return result;
 
-    // What is pushed against its bound is held there while the others go on, until none comes to one or leaves it.
-    for (int left = options.max_iterations; left > 0;) {
-        const Block all(problem, free, result.best, options.step);
-        const std::vector<std::size_t> held = pushed_out(all, u, problem.residuals);
-        result.evaluations += all.evaluations();
+    // First all numbers together, as far as that goes.  Then what is pushed against its bound is held there while the
+    // others go on, until none comes to one or leaves it.
+    bool together = true;
+    for (int left = options.max_iterations; left > 0; together = false) {
+        std::vector<std::size_t> held;
+        if (!together) {
+            const Block all(problem, free, result.best, options.step);
+            held = pushed_out(all, u, problem.residuals);
+            result.evaluations += all.evaluations();
+        }
         std::vector<std::size_t> going;  // of the free ones
         std::vector<double> at;
         for (std::size_t k = 0; k < free.size(); ++k) {
@@ -167,21 +172,25 @@ Result minimise_squares(const LeastSquaresProblem& problem, const LeastSquaresOp
         how.logging_type = ceres::SILENT;
         how.num_threads = 1;
         how.update_state_every_iteration = true;
-        how.callbacks.push_back(&reached);
+        if (!together) how.callbacks.push_back(&reached);
         ceres::Solver::Summary summary;
         ceres::Solve(how, &solved, &summary);
         result.evaluations += block->evaluations() + 1;
-        left -= std::max(1, static_cast<int>(summary.iterations.size()) - 1);
+        if (!together) left -= std::max(1, static_cast<int>(summary.iterations.size()) - 1);
         x = result.best;
         for (std::size_t k = 0; k < going.size(); ++k) x[numbers[k]] = block->value(k, at[k]);
         if (!problem.residual(x, residual)) break;
         const double value = half_square();
-        if (!(value < result.value)) break;
+        const bool better = value < result.value;
+        if (!better && !together) break;
         const bool little = value > (1.0 - options.value_tolerance) * result.value;
-        result.value = value;
-        result.best = x;
-        for (std::size_t k = 0; k < going.size(); ++k) u[going[k]] = at[k];
-        if (!reached.reached() && (little || std::none_of(u.begin(), u.end(), on_bound))) break;
+        if (better) {
+            result.value = value;
+            result.best = x;
+            for (std::size_t k = 0; k < going.size(); ++k) u[going[k]] = at[k];
+        }
+        const bool inside = std::none_of(u.begin(), u.end(), on_bound);
+        if (together ? inside : !reached.reached() && (little || inside)) break;
     }
     return result;
 }
