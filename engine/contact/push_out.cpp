@@ -49,29 +49,38 @@ void move_wall(const LumenSurfaceModel& model, const SurfacePoint& point, const 
     });
 }
 
+// Where a point of a triangle is, by the particles.
+Vec3 place_of(const LumenSurfaceModel& model, const SurfacePoint& point, std::span<const Vec3> particles) {
+    Vec3 place = Vec3::Zero();
+    for (int corner = 0; corner < 3; ++corner)
+        place += point.barycentric[corner] *
+                 evaluate(model.binding, at(model.triangles[at(point.triangle)][corner]), particles);
+    return place;
+}
+
 }  // namespace
 
-double push_out(const LumenSurfaceModel& model, const TreePart& near, const ContactSet& contacts,
-                std::span<const DeviceSample> samples, double depth_mm, std::span<const double> particle_compliance,
-                std::span<Vec3> particles, LumenSurfaceState& surface, const Workers& workers) {
-    std::vector<Index> touching;
-    std::vector<WallSeen> seen;  // what the rows of each know
+std::vector<PressedSample> with_rows(const ContactSet& contacts) {
+    std::vector<PressedSample> out;
     const std::span<const WallRow> rows = contacts.wall_rows();
     for (std::size_t r = 0; r < rows.size(); ++r)
-        if (touching.empty() || touching.back() != rows[r].sample) {
-            touching.push_back(rows[r].sample);
-            seen.push_back(contacts.seen_by_sample_of(r));
-        }
+        if (out.empty() || out.back().sample != rows[r].sample)
+            out.push_back({rows[r].sample, contacts.hint(at(rows[r].sample)), contacts.seen_by_sample_of(r)});
+    return out;
+}
+
+double push_out(const LumenSurfaceModel& model, const TreePart& near, std::span<const PressedSample> pressed,
+                std::span<const DeviceSample> samples, double depth_mm, std::span<const double> particle_compliance,
+                std::span<Vec3> particles, LumenSurfaceState& surface, const Workers& workers) {
     std::map<Index, Vec3> start, best;  // of the particles moved so far: where they lay at first, and in the best round
     double least = std::numeric_limits<double>::infinity();
     for (int round = 0;; ++round) {
         update(model, particles, near, surface, workers);
         double deepest = 0.0;
         std::vector<SurfacePoint> wall;
-        for (std::size_t k = 0; k < touching.size(); ++k) {
-            const DeviceSample& s = samples[at(touching[k])];
-            wall.push_back(closest_credible(model, surface, s.position, reach_mm, contacts.hint(at(touching[k])),
-                                            s.radius, seen[k]));
+        for (const PressedSample& one : pressed) {
+            const DeviceSample& s = samples[at(one.sample)];
+            wall.push_back(closest_credible(model, surface, s.position, reach_mm, one.hint, s.radius, one.seen));
             if (wall.back().found()) deepest = std::max(deepest, s.radius - wall.back().signed_distance);
         }
         if (deepest < least) {
@@ -80,9 +89,13 @@ double push_out(const LumenSurfaceModel& model, const TreePart& near, const Cont
             for (const auto& [particle, first] : start) best.emplace(particle, particles[at(particle)]);
         }
         if (deepest <= depth_mm + 0.01 || round == rounds || deepest > least + worse_mm) break;
-        for (std::size_t k = 0; k < touching.size(); ++k) {
-            const double depth = samples[at(touching[k])].radius - wall[k].signed_distance;
-            if (wall[k].found() && depth > depth_mm)
+        // Neighbours look at the same facets: each moves what the others before it have left.
+        for (std::size_t k = 0; k < pressed.size(); ++k) {
+            if (!wall[k].found()) continue;
+            const Vec3 gone = place_of(model, wall[k], particles) - wall[k].point;
+            const double depth =
+                samples[at(pressed[k].sample)].radius - wall[k].signed_distance + wall[k].inward_normal.dot(gone);
+            if (depth > depth_mm)
                 move_wall(model, wall[k], (depth_mm - depth) * wall[k].inward_normal, particle_compliance, particles,
                           start);
         }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/push_out.h"
 #include "core/units.h"
 #include "step/catheter_drive.h"
 #include "step/devices.h"
+#include "step/last_resort.h"
 #include "step/tip_yield.h"
 #include "step/wall_forces.h"
 #include "step/wire_weight.h"
@@ -41,8 +41,6 @@ constexpr double pressed_depth_mm = 0.25;
 constexpr int extra_passes = 8;
 // After so many of them a catheter that is still too deep goes back to where it stood, and the rest is for that.
 constexpr int passes_to_go_back = 3;
-// What is deeper than that after the last of them is taken out to so much.
-constexpr double pushed_out_mm = 0.2;
 // Within a step the lumen surface follows the wall up to this far from the devices.
 constexpr double surface_reach_mm = 4.5;
 // ... and for a look at the true depth up to this far from what presses: no closest point asks further
@@ -347,10 +345,10 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
         p.catheter_route->yielded = tip->way;
         give_yield(*p.catheter, *p.catheter_route);
     }
-    if (too_deep) {
+    // Rows that spoke of another place to the last have not seen all that is too deep either.
+    if (too_deep || (passes == p.settings->iterations + extra_passes && p.contacts->staleness() > stale_mm)) {
         p.stage("contact");
-        push_out(*p.surface, *sums.surface_near, *p.contacts, samples.list, pushed_out_mm, scratch.compliance, state.x,
-                 *p.surface_state, workers);
+        take_out_of_wall(p, samples.list, *sums.surface_near);
         p.contacts->refresh(samples.list, state.x, workers);
     }
     p.stage("rod");

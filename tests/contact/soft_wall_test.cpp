@@ -232,8 +232,8 @@ TEST(PushOut, WhatIsTooDeepIsTakenOutByMovingTheWallAlone) {
     std::vector<Vec3> places;
     for (const DeviceSample& s : samples) places.push_back(s.position);
     const TreePart near = part_near(wall.surface.tree, wall.surface_state.boxes, places, 4.5);
-    const double left = push_out(wall.surface, near, contacts, samples, 0.2, wall.scratch.compliance, wall.state.x,
-                                 wall.surface_state, wall.workers);
+    const double left = push_out(wall.surface, near, with_rows(contacts), samples, 0.2, wall.scratch.compliance,
+                                 wall.state.x, wall.surface_state, wall.workers);
     EXPECT_LT(left, 0.22);
     update(wall.surface, wall.state.x, wall.surface_state, wall.workers);
     const PenetrationReport report = penetration_report(wall.surface, wall.surface_state, samples, wall.workers);
@@ -250,6 +250,34 @@ TEST(PushOut, WhatIsTooDeepIsTakenOutByMovingTheWallAlone) {
     }
 }
 
+TEST(PushOut, NeighboursMoveTheWallOnceAndNotEachAnew) {
+    SoftWall wall(5.0, 40.0);
+    wall.predict_all();
+    // A shaft along the wall, 0.6 mm too deep at each of its samples.
+    std::vector<DeviceSample> samples;
+    for (double z = 16.0; z <= 24.0; z += 0.25) {
+        samples.emplace_back();
+        samples.back().position = Vec3(0.0, -4.8, z);
+        samples.back().previous = Vec3(0.0, -4.0, z);
+        samples.back().radius = 0.8;
+        samples.back().arc_mm = z;
+    }
+    ContactSet contacts;
+    wall.detect(contacts, samples);
+    std::vector<Vec3> places;
+    for (const DeviceSample& s : samples) places.push_back(s.position);
+    const TreePart near = part_near(wall.surface.tree, wall.surface_state.boxes, places, 4.5);
+    const double left = push_out(wall.surface, near, with_rows(contacts), samples, 0.2, wall.scratch.compliance,
+                                 wall.state.x, wall.surface_state, wall.workers);
+    EXPECT_LT(left, 0.22);
+    update(wall.surface, wall.state.x, wall.surface_state, wall.workers);
+    for (const DeviceSample& s : samples) {
+        const SurfacePoint point = closest(wall.surface, wall.surface_state, s.position, 4.0);
+        // 1.4 mm clear of it, where each moves it by all of its own depth.
+        EXPECT_LT(point.signed_distance - s.radius, 0.5) << "at " << s.arc_mm;
+    }
+}
+
 TEST(PushOut, BesideAFixedEndNoParticleIsThrownAbout) {
     // Between the fixed ring and the free wall a point's free particles may weigh a thousandth of it.
     for (double z = 0.25; z < 8.0; z += 0.25) {
@@ -263,8 +291,8 @@ TEST(PushOut, BesideAFixedEndNoParticleIsThrownAbout) {
         wall.detect(contacts, samples);
         const TreePart near =
             part_near(wall.surface.tree, wall.surface_state.boxes, std::vector<Vec3>{samples[0].position}, 4.5);
-        push_out(wall.surface, near, contacts, samples, 0.2, wall.scratch.compliance, wall.state.x, wall.surface_state,
-                 wall.workers);
+        push_out(wall.surface, near, with_rows(contacts), samples, 0.2, wall.scratch.compliance, wall.state.x,
+                 wall.surface_state, wall.workers);
         for (std::size_t i = 0; i < wall.model.size(); ++i)
             EXPECT_LT((wall.state.x[i] - wall.model.rest[i]).norm(), 4.0 + 1e-9) << "at " << z << " mm, particle " << i;
     }
