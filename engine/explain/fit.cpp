@@ -122,6 +122,13 @@ std::string why_no_effect(const EffectTrial& trial, const std::vector<bool>& fre
     return strong ? "" : "its strength is zero";
 }
 
+void Fitter::weigh_by(const FittedModel& model) {
+    std::vector<double> least(model.residual.size(), noise_);
+    const std::vector<double> own = rig_.own_error();
+    for (std::size_t c = 0; c < own.size(); ++c) least[c] = std::hypot(noise_, own[c]);
+    scale_ = loss_scale(model.residual, rig_.split(), least);
+}
+
 double Fitter::cost_of(const FittedModel& model) const {
     return mean_cost(model.residual, rig_.split(), 0, scale_);
 }

@@ -28,7 +28,7 @@ public:
     FittedModel begin(std::span<const EffectInfo* const> declared, const Workers& workers);
 
     /// Errors are weighed anew by what a model leaves.
-    void weigh_by(const FittedModel& model) { scale_ = loss_scale(model.residual, rig_.split(), noise_); }
+    void weigh_by(const FittedModel& model);
     const LossScale& scale() const { return scale_; }
 
     /// Looks which of an effect's parameters change anything here: only those are searched, the others keep their

@@ -23,9 +23,10 @@ double LossScale::softened(std::size_t column, double error) const {
     return error < 0.0 ? -root : root;
 }
 
-LossScale loss_scale(const Columns& residual, const Split& split, double least) {
+LossScale loss_scale(const Columns& residual, const Split& split, std::span<const double> least) {
     LossScale out;
-    for (const auto& column : residual) {
+    for (std::size_t c = 0; c < residual.size(); ++c) {
+        const std::vector<double>& column = residual[c];
         std::vector<double> sizes;
         double largest = 0.0;
         for (std::size_t i = 0; i < column.size(); ++i) {
@@ -33,7 +34,7 @@ LossScale loss_scale(const Columns& residual, const Split& split, double least) 
             sizes.push_back(std::fabs(column[i]));
             largest = std::max(largest, sizes.back());
         }
-        double scale = least;
+        double scale = least[c];
         if (!sizes.empty()) {
             const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
             std::nth_element(sizes.begin(), middle, sizes.end());

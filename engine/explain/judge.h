@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "explain/rig.h"
 
@@ -16,8 +17,9 @@ struct LossScale {
     double softened(std::size_t column, double error) const;
 };
 
-/// Robust scales (1.4826 median absolute value) of the rows that the fit sees, at least `least` (the declared noise).
-LossScale loss_scale(const Columns& residual, const Split& split, double least);
+/// Robust scales (1.4826 median absolute value) of the rows that the fit sees, at least what is known of each column's
+/// noise and of how far the base model is itself off there: what nobody can know does not decide.
+LossScale loss_scale(const Columns& residual, const Split& split, std::span<const double> least);
 
 /// Known rows of a part, all columns together.
 double known_rows(const Columns& residual, const Split& split, std::uint8_t part);

@@ -8,8 +8,8 @@ namespace {
 constexpr double pushed_out_mm = 0.2;
 // Deeper than this after it, by the nearest wall whatever was known of it, and the wall is folded.
 constexpr double folded_mm = 0.26;
-// How far from a device a sheet of the wall may lie the other way round.
-constexpr double look_mm = 4.0;
+// How far beyond it a device's axis may be.
+constexpr double look_mm = 2.0;
 // So far about what is in a fold the wall goes back ...
 constexpr double unfolded_mm = 8.0;
 // ... and so far about it samples are looked after.
@@ -19,13 +19,17 @@ std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
 
-/// Where samples are deep in a fold.
-std::vector<Vec3> in_folds(const Parts& p, std::span<const DeviceSample> samples) {
+/// Where samples are deep in the nearest wall.
+std::vector<Vec3> in_folds(const Parts& p, std::span<const DeviceSample> samples, bool all) {
     std::vector<Vec3> places;
-    for (const DeviceSample& s : samples) {
+    const auto look = [&](const DeviceSample& s) {
         const SurfacePoint wall = closest(*p.surface, *p.surface_state, s.position, look_mm);
         if (wall.found() && s.radius - wall.signed_distance > folded_mm) places.push_back(s.position);
-    }
+    };
+    if (all)
+        for (const DeviceSample& s : samples) look(s);
+    else
+        for (const PressedSample& one : with_rows(*p.contacts)) look(samples[at(one.sample)]);
     return places;
 }
 
@@ -44,15 +48,18 @@ void put_back(Parts& p, std::span<const Vec3> places, const TreePart& near) {
 
 }  // namespace
 
-void take_out_of_wall(Parts& p, std::span<const DeviceSample> samples, const TreePart& near) {
+void take_out_of_wall(Parts& p, std::span<const DeviceSample> samples, const TreePart& near, bool deep) {
     const Workers& workers = p.world->workers();
     const auto push = [&](std::span<const PressedSample> pressed) {
         push_out(*p.surface, near, pressed, samples, pushed_out_mm, p.wall_scratch->compliance, p.wall_state->x,
                  *p.surface_state, workers);
         update(*p.surface, p.wall_state->x, near, *p.surface_state, workers);
     };
-    push(with_rows(*p.contacts));
-    const std::vector<Vec3> folds = in_folds(p, samples);
+    if (deep)
+        push(with_rows(*p.contacts));
+    else
+        update(*p.surface, p.wall_state->x, near, *p.surface_state, workers);
+    const std::vector<Vec3> folds = in_folds(p, samples, deep);
     if (folds.empty()) return;
     put_back(p, folds, near);
     std::vector<PressedSample> about;

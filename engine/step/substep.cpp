@@ -346,9 +346,11 @@ void substep(Parts& p, const Input& input, const SegmentBends& bends, const Driv
         give_yield(*p.catheter, *p.catheter_route);
     }
     // Rows that spoke of another place to the last have not seen all that is too deep either.
-    if (too_deep || (passes == p.settings->iterations + extra_passes && p.contacts->staleness() > stale_mm)) {
+    const bool deep =
+        too_deep || (passes == p.settings->iterations + extra_passes && p.contacts->staleness() > stale_mm);
+    if (deep || s1 >= 1.0) {
         p.stage("contact");
-        take_out_of_wall(p, samples.list, *sums.surface_near);
+        take_out_of_wall(p, samples.list, *sums.surface_near, deep);
         p.contacts->refresh(samples.list, state.x, workers);
     }
     p.stage("rod");

@@ -255,7 +255,8 @@ TEST(PushOut, NeighboursMoveTheWallOnceAndNotEachAnew) {
     wall.predict_all();
     // A shaft along the wall, 0.6 mm too deep at each of its samples.
     std::vector<DeviceSample> samples;
-    for (double z = 16.0; z <= 24.0; z += 0.25) {
+    for (int i = 0; i <= 32; ++i) {
+        const double z = 16.0 + 0.25 * i;
         samples.emplace_back();
         samples.back().position = Vec3(0.0, -4.8, z);
         samples.back().previous = Vec3(0.0, -4.0, z);
