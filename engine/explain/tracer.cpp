@@ -382,6 +382,9 @@ private:
                     none.empty() ? "no longer needed beside the others" : none + " beside the others";
                 best = without;
                 out_.effects.clear();
+                // What did as well did so beside the effect that is gone.
+                out_.ambiguous_with.clear();
+                out_.parting.clear();
                 k = 0;
                 continue;
             }

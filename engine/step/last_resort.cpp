@@ -20,16 +20,12 @@ std::size_t at(Index i) {
 }
 
 /// Where samples are deep in the nearest wall.
-std::vector<Vec3> in_folds(const Parts& p, std::span<const DeviceSample> samples, bool all) {
+std::vector<Vec3> in_folds(const Parts& p, std::span<const DeviceSample> samples) {
     std::vector<Vec3> places;
-    const auto look = [&](const DeviceSample& s) {
+    for (const DeviceSample& s : samples) {
         const SurfacePoint wall = closest(*p.surface, *p.surface_state, s.position, look_mm);
         if (wall.found() && s.radius - wall.signed_distance > folded_mm) places.push_back(s.position);
-    };
-    if (all)
-        for (const DeviceSample& s : samples) look(s);
-    else
-        for (const PressedSample& one : with_rows(*p.contacts)) look(samples[at(one.sample)]);
+    }
     return places;
 }
 
@@ -59,7 +55,7 @@ void take_out_of_wall(Parts& p, std::span<const DeviceSample> samples, const Tre
         push(with_rows(*p.contacts));
     else
         update(*p.surface, p.wall_state->x, near, *p.surface_state, workers);
-    const std::vector<Vec3> folds = in_folds(p, samples, deep);
+    const std::vector<Vec3> folds = in_folds(p, samples);
     if (folds.empty()) return;
     put_back(p, folds, near);
     std::vector<PressedSample> about;
