@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/errors.h"
 #include "explain/rigs.h"
@@ -27,7 +28,7 @@ constexpr unsigned of_wall = hook_material | hook_membrane | hook_slip;
 
 class ContactRig final : public Rig {
 public:
-    ContactRig(const Dataset& data, const Split& split) : Rig(data, split) {
+    ContactRig(const Dataset& data, const Split& split, const Crew& crew) : Rig(data, split), crew_(crew) {
         hooks_ = of_wall | hook_measure;
         for (const char* axis : {"tool_x", "tool_y", "tool_z"}) {
             const std::vector<double>& values = data.find(axis)->values;
@@ -46,14 +47,21 @@ public:
             pushes_[run].ball_mm.emplace_back(data.find("tool_x")->values[i], data.find("tool_y")->values[i],
                                               data.find("tool_z")->values[i]);
         }
-        for (std::size_t run = 0; run < pushes_.size(); ++run) {
-            walls_.push_back(wall_of(run, spacing_mm, far_spacing_mm));
-            pushes_[run].keep_wall = true;
-            plain_.push_back(rest_of(run, walls_[run]));
-            pushes_[run].keep_wall = false;
-            middle_.push_back(rest_of(run, wall_of(run, middle_spacing_mm, middle_far_spacing_mm)));
-            fine_.push_back(rest_of(run, wall_of(run, fine_spacing_mm, fine_far_spacing_mm)));
-        }
+        walls_.resize(pushes_.size());
+        plain_.resize(pushes_.size());
+        middle_.resize(pushes_.size());
+        fine_.resize(pushes_.size());
+        crew_.each(3 * pushes_.size(), [&](std::size_t k) {
+            const std::size_t run = k % pushes_.size();
+            if (k < pushes_.size()) {  // the longest first
+                fine_[run] = rest_of(run, wall_of(run, fine_spacing_mm, fine_far_spacing_mm), false);
+            } else if (k < 2 * pushes_.size()) {
+                middle_[run] = rest_of(run, wall_of(run, middle_spacing_mm, middle_far_spacing_mm), false);
+            } else {
+                walls_[run].emplace(wall_of(run, spacing_mm, far_spacing_mm));
+                plain_[run] = rest_of(run, *walls_[run], true);
+            }
+        });
         about_ = plain_;
         about_fine_ = fine_;
     }
@@ -80,17 +88,18 @@ public:
         return out;
     }
 
-    void anchor(std::span<const EffectTrial> trials, const Workers& workers) override {
+    void anchor(std::span<const EffectTrial> trials) override {
         about_ = plain_;
         about_fine_ = fine_;
         if (!RigEffects(trials).uses(of_wall)) return;
         std::vector<PushResult> coarse(pushes_.size()), fine(pushes_.size());
-        workers.for_ranges(pushes_.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t run = begin; run < end; ++run) {
-                RigEffects effects(trials);
-                coarse[run] = pushed(effects, run, nullptr);
+        crew_.each(2 * pushes_.size(), [&](std::size_t k) {
+            const std::size_t run = k % pushes_.size();
+            RigEffects effects(trials);
+            if (k < pushes_.size())
                 fine[run] = pushed_on(wall_of(run, fine_spacing_mm, fine_far_spacing_mm), effects, run, pushes_[run]);
-            }
+            else
+                coarse[run] = pushed(effects, run, nullptr);
         });
         const auto rests = [](const PushResult& result) { return result.at_rest; };
         if (!std::all_of(coarse.begin(), coarse.end(), rests) || !std::all_of(fine.begin(), fine.end(), rests)) return;
@@ -117,11 +126,17 @@ public:
         for (const DataColumn* column : measured_) out.push_back(column->values);
         RigEffects effects(trials);
         const bool walled = effects.uses(of_wall), read = effects.uses(hook_measure);
-        bool at_rest = true;  // a law under which one wall does not come to rest is none: the others are not asked
+        std::vector<PushResult> pushes(pushes_.size());
+        if (walled)
+            crew_.each(pushes_.size(), [&](std::size_t run) {
+                RigEffects of_run(trials);
+                pushes[run] = pushed(of_run, run, static_cast<Memory*>(memory));
+            });
+        // A law under which one wall does not come to rest is none.
+        const bool at_rest =
+            std::all_of(pushes.begin(), pushes.end(), [](const PushResult& push) { return push.at_rest; });
         for (std::size_t run = 0; run < pushes_.size(); ++run) {
-            PushResult own;
-            if (walled && at_rest) own = pushed(effects, run, static_cast<Memory*>(memory));
-            at_rest = at_rest && (!walled || own.at_rest);
+            const PushResult& own = pushes[run];
             effects.begin_run(static_cast<Index>(run));
             for (std::size_t k = 0; k < pushes_[run].ball_mm.size(); ++k) {
                 const std::size_t row = first_[run] + k;
@@ -184,8 +199,10 @@ private:
         return PushedWall(rig);
     }
 
-    PushResult rest_of(std::size_t run, const PushedWall& wall) const {
-        PushResult out = wall.push(pushes_[run]);
+    PushResult rest_of(std::size_t run, const PushedWall& wall, bool keep_wall) const {
+        Push push = pushes_[run];
+        push.keep_wall = keep_wall;
+        PushResult out = wall.push(push);
         if (!out.at_rest)
             throw UserError(data_.folder + ": the wall of run " + data_.run_names[run] +
                             " comes to no rest under its tool; there is no base model");
@@ -195,11 +212,11 @@ private:
     PushResult pushed(RigEffects& effects, std::size_t run, Memory* memory) const {
         Push push = pushes_[run];
         push.guess = plain_[run].wall_mm;
-        if (memory == nullptr) return pushed_on(walls_[run], effects, run, push);
+        if (memory == nullptr) return pushed_on(*walls_[run], effects, run, push);
         push.keep_wall = true;
         push.guess = memory->wall[run];
         push.factors = memory->factors[run];
-        PushResult out = pushed_on(walls_[run], effects, run, push);
+        PushResult out = pushed_on(*walls_[run], effects, run, push);
         if (out.at_rest)
             memory->wall[run] = std::move(out.wall_mm);
         else
@@ -239,19 +256,20 @@ private:
         return wall.push(push, law);
     }
 
-    std::vector<PushedWall> walls_;               // (runs) dense where each is pushed
-    std::vector<Push> pushes_;                    // (runs)
-    std::vector<std::size_t> first_;              // (runs) row
-    std::vector<PushResult> plain_;               // (runs) of the base model on them
-    std::vector<PushResult> middle_;              // (runs) of the base model on finer ones
-    std::vector<PushResult> fine_;                // (runs) and on the finest
-    std::vector<PushResult> about_, about_fine_;  // (runs) of the model by which others are corrected
+    std::vector<std::optional<PushedWall>> walls_;  // (runs) dense where each is pushed
+    std::vector<Push> pushes_;                      // (runs)
+    std::vector<std::size_t> first_;                // (runs) row
+    std::vector<PushResult> plain_;                 // (runs) of the base model on them
+    std::vector<PushResult> middle_;                // (runs) of the base model on finer ones
+    std::vector<PushResult> fine_;                  // (runs) and on the finest
+    std::vector<PushResult> about_, about_fine_;    // (runs) of the model by which others are corrected
+    Crew crew_;
 };
 
 }  // namespace
 
-std::unique_ptr<Rig> make_contact_rig(const Dataset& data, const Split& split) {
-    return std::make_unique<ContactRig>(data, split);
+std::unique_ptr<Rig> make_contact_rig(const Dataset& data, const Split& split, const Crew& crew) {
+    return std::make_unique<ContactRig>(data, split, crew);
 }
 
 }  // namespace cathlab

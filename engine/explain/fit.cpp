@@ -221,8 +221,9 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too, RigMemory*
         }
     };
     problem.residuals = static_cast<std::size_t>(rows) + weights.size();
-    FittedModel trial = model;
     problem.residual = [&](std::span<const double> x, std::span<double> out) {
+        FittedModel trial;
+        trial.effects = model.effects;
         unpack(x, trial);
         const Columns left = rig_.residual_near(trial.base, trial.effects, memory);
         std::size_t at = 0;
@@ -236,7 +237,8 @@ void Fitter::refit(FittedModel& model, int iterations, bool base_too, RigMemory*
     LeastSquaresOptions options;
     options.max_iterations = iterations;
     options.value_tolerance = rig_.slow() ? 1e-3 : 1e-5;
-    if (rig_.slow()) options.step = 3e-3;  // a wall at rest is known to a tolerance
+    if (rig_.slow()) options.step = 3e-3;         // a wall at rest is known to a tolerance
+    if (memory == nullptr) options.crew = crew_;  // a memory serves one model after another
     const Result found = minimise_squares(problem, options);
     unpack(found.best, model);
     for (EffectTrial& fitted : model.effects)
@@ -387,13 +389,18 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
     const std::vector<double> usual = defaults(effect);
     const auto better = [](const FittedModel& a, const FittedModel& b) { return a.train_cost < b.train_cost; };
     const std::unique_ptr<RigMemory> memory = rig_.memory();
-    for (const std::vector<double>& values : starts(from, effect)) {
+    const std::vector<std::vector<double>> all = starts(from, effect);
+    std::vector<FittedModel> begun(all.size());
+    (memory ? Crew() : crew_).each(all.size(), [&](std::size_t k) {
+        begun[k] = beside(from, turned(from, {&effect, all[k]}));
+        begun[k].residual = rig_.residual_near(begun[k].base, begun[k].effects, memory.get());
+        begun[k].train_cost = cost_of(begun[k]);
+    });
+    for (FittedModel& model : begun) {
+        const std::vector<double>& values = trial_of(model, effect).values;
         bool back = false;
         for (std::size_t k = 0; k < values.size(); ++k)
             back = back || (is_direction(effect.parameters[k]) && values[k] != usual[k]);
-        FittedModel model = beside(from, turned(from, {&effect, values}));
-        model.residual = rig_.residual_near(model.base, model.effects, memory.get());
-        model.train_cost = cost_of(model);
         std::vector<FittedModel>& best = tried[back ? 1 : 0];
         // The base numbers have not moved yet, which favours shapes that change little: of each shape one is searched.
         const auto alike = std::find_if(best.begin(), best.end(), [&](const FittedModel& other) {
@@ -414,34 +421,33 @@ FittedModel Fitter::with(const FittedModel& from, const EffectInfo& effect) cons
         const bool closer_to = first || (rig_.slow() ? better(model, most) : misfit(model) < misfit(most));
         if (closer_to) most = std::move(model);
     };
-    if (may_differ(effect))
-        for (const std::vector<FittedModel>& way : tried)
-            for (const FittedModel& model : way) {
-                FittedModel other = each_run_its_own(model, effect);
-                take(own, other);
-            }
+    if (may_differ(effect)) {
+        std::vector<FittedModel> others = tried[0];
+        others.insert(others.end(), tried[1].begin(), tried[1].end());
+        crew_.each(others.size(), [&](std::size_t k) { others[k] = each_run_its_own(std::move(others[k]), effect); });
+        for (FittedModel& model : others) take(own, model);
+    }
     for (std::vector<FittedModel>& way : tried) {
         int iterations = rig_.slow() ? 6 : 10;
         if (shaped) {  // a few steps for all of them, more for the better half
-            for (FittedModel& model : way) refit(model, 4);
+            crew_.each(way.size(), [&](std::size_t k) { refit(way[k], 4); });
             std::sort(way.begin(), way.end(), better);
             way.resize((way.size() + 1) / 2);
             iterations = 8;
         }
-        for (FittedModel& model : way) {
-            refit(model, iterations, base_too, memory.get());
-            take(best, model);
-        }
+        (memory ? Crew() : crew_).each(way.size(), [&](std::size_t k) {
+            refit(way[k], iterations, base_too, memory.get());
+        });
+        for (FittedModel& model : way) take(best, model);
     }
     const auto finish = [&](FittedModel& model, int iterations) {
         closer(model).refit(model, iterations);
         model.train_cost = cost_of(model);
     };
     if (!rig_.slow()) finish(best, rig_.bounds().empty() ? 30 : 15);
-    for (FittedModel& model : in_other_valleys(from, effect)) {
-        finish(model, 15);
-        take(best, model);
-    }
+    std::vector<FittedModel> valleys = in_other_valleys(from, effect);
+    crew_.each(valleys.size(), [&](std::size_t k) { finish(valleys[k], 15); });
+    for (FittedModel& model : valleys) take(best, model);
     if (own.effects.empty()) return best;
     // Numbers of their own have to pay for themselves [schwarz1978].
     settle_runs(own, effect);

@@ -3,7 +3,6 @@
 
 #include <map>
 
-#include "core/parallel.h"
 #include "explain/judge.h"
 #include "explain/rig.h"
 
@@ -22,10 +21,11 @@ struct FittedModel {
 class Fitter {
 public:
     /// noise: the declared one, 0 = not known.
-    Fitter(const Rig& rig, double noise) : rig_(rig), noise_(noise) {}
+    /// crew: those who search; results do not depend on it.
+    Fitter(const Rig& rig, double noise, const Crew& crew = Crew()) : rig_(rig), noise_(noise), crew_(crew) {}
 
     /// The base model with effects that are there without question.
-    FittedModel begin(std::span<const EffectInfo* const> declared, const Workers& workers);
+    FittedModel begin(std::span<const EffectInfo* const> declared = {});
 
     /// Errors are weighed anew by what a model leaves.
     void weigh_by(const FittedModel& model);
@@ -93,6 +93,7 @@ private:
 
     const Rig& rig_;
     double noise_;
+    Crew crew_;
     LossScale scale_;
     std::vector<std::vector<double>>
         valleys_;  ///< base numbers at which the base model is nearly as good as at its best

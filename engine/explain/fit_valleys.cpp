@@ -7,7 +7,7 @@
 
 namespace cathlab {
 
-FittedModel Fitter::begin(std::span<const EffectInfo* const> declared, const Workers& workers) {
+FittedModel Fitter::begin(std::span<const EffectInfo* const> declared) {
     FittedModel model;
     model.base = rig_.start();
     model.residual = rig_.residual(model.base, {});
@@ -18,16 +18,14 @@ FittedModel Fitter::begin(std::span<const EffectInfo* const> declared, const Wor
         constexpr double around = 0.06;  // of the ranges
         weigh_by(model);
         std::vector<FittedModel> tried(1 + others, model);
-        workers.for_ranges(tried.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                std::vector<double>& base = tried[k].base;
-                for (std::size_t j = 0; k > 0 && j < base.size(); ++j) {
-                    const Bound& b = bounds[j];
-                    const double shift = random_normal(1, RandomStream::optimiser, k - 1, j);
-                    base[j] = std::clamp(base[j] + around * shift * (b.upper - b.lower), b.lower, b.upper);
-                }
-                refit(tried[k], 15);
+        crew_.each(tried.size(), [&](std::size_t k) {
+            std::vector<double>& base = tried[k].base;
+            for (std::size_t j = 0; k > 0 && j < base.size(); ++j) {
+                const Bound& b = bounds[j];
+                const double shift = random_normal(1, RandomStream::optimiser, k - 1, j);
+                base[j] = std::clamp(base[j] + around * shift * (b.upper - b.lower), b.lower, b.upper);
             }
+            refit(tried[k], 15);
         });
         std::stable_sort(tried.begin(), tried.end(),
                          [](const FittedModel& a, const FittedModel& b) { return a.train_cost < b.train_cost; });

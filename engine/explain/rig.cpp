@@ -165,7 +165,7 @@ std::string Rig::why_not(const EffectInfo& effect) const {
     return "";
 }
 
-std::unique_ptr<Rig> make_rig(const Dataset& data, const Split& split) {
+std::unique_ptr<Rig> make_rig(const Dataset& data, const Split& split, const Crew& crew) {
     // Every candidate runs through all rows hundreds of times.
     constexpr std::size_t most_rows = 100000;
     if (data.rows() > most_rows)
@@ -176,7 +176,7 @@ std::unique_ptr<Rig> make_rig(const Dataset& data, const Split& split) {
     if (data.kind == "tendon-tip") return make_tendon_rig(data, split);
     if (data.kind == "heart-motion") return make_heart_rig(data, split);
     if (data.kind == "wall-tension") return make_tension_rig(data, split);
-    if (data.kind == "wall-contact") return make_contact_rig(data, split);
+    if (data.kind == "wall-contact") return make_contact_rig(data, split, crew);
     throw UserError(data.folder + ": data of kind '" + data.kind + "' have no rig");
 }
 

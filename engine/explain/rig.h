@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/parallel.h"
 #include "effects/effect.h"
 #include "explain/dataset.h"
 #include "explain/split.h"
+#include "optimise/crew.h"
 #include "optimise/problem.h"
 
 namespace cathlab {
@@ -82,7 +82,7 @@ public:
 
     /// A rig that corrects its models by what a finer one says of a single one: from now on by what it says of this.
     /// Not while other threads ask it.
-    virtual void anchor(std::span<const EffectTrial> /*effects*/, const Workers& /*workers*/) {}
+    virtual void anchor(std::span<const EffectTrial> /*effects*/) {}
 
     /// By how much the base model itself is known to be off, root mean square a measured column; empty = it is exact.
     virtual std::vector<double> own_error() const { return {}; }
@@ -104,8 +104,8 @@ protected:
 };
 
 /// Throws UserError for kinds without a rig, for more than 100,000 rows, and for data that do not determine the base
-/// model.
-std::unique_ptr<Rig> make_rig(const Dataset& data, const Split& split);
+/// model.  crew: those who may help with one model; results do not depend on it.
+std::unique_ptr<Rig> make_rig(const Dataset& data, const Split& split, const Crew& crew = Crew());
 
 /// The rows that the fit sees (0) or that judge it (1): root mean square a measured column.  NaN without such a row.
 double rms_of(const Columns& residual, const Split& split, std::uint8_t part);

@@ -9,7 +9,7 @@ std::unique_ptr<Rig> make_catheter_rig(const Dataset& data, const Split& split);
 std::unique_ptr<Rig> make_tendon_rig(const Dataset& data, const Split& split);
 std::unique_ptr<Rig> make_heart_rig(const Dataset& data, const Split& split);
 std::unique_ptr<Rig> make_tension_rig(const Dataset& data, const Split& split);
-std::unique_ptr<Rig> make_contact_rig(const Dataset& data, const Split& split);
+std::unique_ptr<Rig> make_contact_rig(const Dataset& data, const Split& split, const Crew& crew);
 
 /// The effects of one recording, from its first row on, asked as a step asks them.
 class RigEffects {

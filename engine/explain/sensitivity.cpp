@@ -6,7 +6,6 @@
 #include <mutex>
 
 #include "core/errors.h"
-#include "core/parallel.h"
 #include "explain/fit.h"
 
 namespace cathlab {
@@ -45,15 +44,15 @@ Columns modelled(const Rig& rig, std::span<const double> base, std::span<const E
 /// The recording with other numbers measured, and what it takes to fit models to it.
 struct Made {
     Made(const Dataset& like, const Split& split, const Columns& measured, std::span<const EffectInfo* const> effects,
-         double noise)
+         double noise, const Crew& crew)
         : data(like) {
         std::size_t c = 0;
         for (DataColumn& column : data.columns)
             if (column.role == ColumnRole::measured) column.values = measured[c++];
-        rig = make_rig(data, split);
-        fitter = std::make_unique<Fitter>(*rig, noise);
+        rig = make_rig(data, split, crew);
+        fitter = std::make_unique<Fitter>(*rig, noise, crew);
         for (const EffectInfo* effect : effects) fitter->learn(*effect);
-        base = fitter->begin({}, Workers(1));
+        base = fitter->begin();
         before = rms_of(base.residual, split, 1);
     }
     Dataset data;
@@ -67,9 +66,9 @@ struct Made {
 
 Sensitivity sensitivity(const Dataset& data, const ExplainOptions& options) {
     const Split split = split_rows(data);
-    const std::unique_ptr<Rig> rig = make_rig(data, split);
-    Fitter fitter(*rig, data.sensor_noise);
-    const Workers workers(std::max(1, options.threads));
+    const Crew crew(options.threads);
+    const std::unique_ptr<Rig> rig = make_rig(data, split, crew);
+    Fitter fitter(*rig, data.sensor_noise, crew);
     std::vector<const EffectInfo*> effects;
     Sensitivity out;
     out.response_over_noise = over_noise;
@@ -82,7 +81,7 @@ Sensitivity sensitivity(const Dataset& data, const ExplainOptions& options) {
         else
             out.taken_up.push_back(spoken_name(effect));
     }
-    const FittedModel fitted = fitter.begin({}, workers);
+    const FittedModel fitted = fitter.begin();
     double noise = data.sensor_noise;
     if (!(noise > 0.0)) noise = 0.2 * rms_of(fitted.residual, split, 0);
     const Columns plain = modelled(*rig, fitted.base, {});
@@ -100,22 +99,21 @@ Sensitivity sensitivity(const Dataset& data, const ExplainOptions& options) {
         const std::lock_guard lock(telling);
         if (!options.on_progress(part)) stop = true;
     };
-    workers.for_ranges(effects.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end && !stop; ++k) {
-            constexpr int rounds = 6;
-            double level = 0.02, seen = 0.0;
-            for (int round = 0; round < rounds; ++round) {
-                const EffectTrial trial = at_level(*effects[k], level, data.run_names.size(), rig->places_differ());
-                const Columns there = modelled(*rig, fitted.base, std::span(&trial, 1));
-                made[k] = std::make_unique<Made>(data, split, there, effects, noise);
-                seen = made[k]->before;
-                const double miss = seen / (over_noise * noise);
-                if ((miss > 0.8 && miss < 1.25) || (level >= 1.0 && miss < 1.0)) break;
-                level = std::min(1.0, level * std::clamp(miss > 0.0 ? 1.0 / miss : 10.0, 0.1, 10.0));
-            }
-            weak[k] = seen < too_weak * noise;
-            tell(1);
+    crew.each(effects.size(), [&](std::size_t k) {
+        if (stop) return;
+        constexpr int rounds = 6;
+        double level = 0.02, seen = 0.0;
+        for (int round = 0; round < rounds; ++round) {
+            const EffectTrial trial = at_level(*effects[k], level, data.run_names.size(), rig->places_differ());
+            const Columns there = modelled(*rig, fitted.base, std::span(&trial, 1));
+            made[k] = std::make_unique<Made>(data, split, there, effects, noise, crew);
+            seen = made[k]->before;
+            const double miss = seen / (over_noise * noise);
+            if ((miss > 0.8 && miss < 1.25) || (level >= 1.0 && miss < 1.0)) break;
+            level = std::min(1.0, level * std::clamp(miss > 0.0 ? 1.0 / miss : 10.0, 0.1, 10.0));
         }
+        weak[k] = seen < too_weak * noise;
+        tell(1);
     });
     std::vector<std::pair<std::size_t, std::size_t>> two;
     for (std::size_t a = 0; a < effects.size(); ++a) {
@@ -124,15 +122,14 @@ Sensitivity sensitivity(const Dataset& data, const ExplainOptions& options) {
             if (a != b) two.emplace_back(a, b);
     }
     out.pairs.resize(two.size());
-    workers.for_ranges(two.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end && !stop; ++k) {
-            const auto [a, b] = two[k];
-            const Made& recording = *made[a];
-            const FittedModel model = recording.fitter->with(recording.base, *effects[b]);
-            out.pairs[k] = {spoken_name(*effects[a]), spoken_name(*effects[b]),
-                            rms_of(model.residual, split, 1) / recording.before};
-            tell(1);
-        }
+    crew.each(two.size(), [&](std::size_t k) {
+        if (stop) return;
+        const auto [a, b] = two[k];
+        const Made& recording = *made[a];
+        const FittedModel model = recording.fitter->with(recording.base, *effects[b]);
+        out.pairs[k] = {spoken_name(*effects[a]), spoken_name(*effects[b]),
+                        rms_of(model.residual, split, 1) / recording.before};
+        tell(1);
     });
     if (stop) throw UserError("stopped; nothing was written");
     std::stable_sort(out.pairs.begin(), out.pairs.end(),

@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include "core/errors.h"
-#include "core/parallel.h"
 #include "core/svg_plot.h"
 #include "explain/fit.h"
 #include "explain/residual.h"
@@ -78,14 +77,14 @@ public:
         : data_(data),
           options_(options),
           split_(split_rows(data)),
-          rig_(make_rig(data, split_)),
-          fitter_(*rig_, data.sensor_noise),
-          workers_(std::max(1, options.threads)) {}
+          crew_(options.threads),
+          rig_(make_rig(data, split_, crew_)),
+          fitter_(*rig_, data.sensor_noise, crew_) {}
 
     Explanation run() {
         out_.cannot = rig_->notes();
         choose_candidates();
-        FittedModel base = fitter_.begin(declared_, workers_);
+        FittedModel base = fitter_.begin(declared_);
         out_.split = split_;
         own_error_ = rig_->own_error();
         double square = 0.0;
@@ -193,7 +192,7 @@ private:
     /// What the rig corrects, it corrects about this model from now on.
     void anchor_at(FittedModel& model) {
         if (!rig_->slow()) return;
-        rig_->anchor(model.effects, workers_);
+        rig_->anchor(model.effects);
         model.residual = rig_->residual(model.base, model.effects);
         fitter_.refit(model, 6);
     }
@@ -202,14 +201,13 @@ private:
         std::atomic<std::size_t> done{0};
         std::atomic<bool> stop{false};
         std::mutex telling;
-        workers_.for_ranges(children.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end && !stop; ++k) {
-                children[k].model = fitter_.with(kept_[children[k].parent], *children[k].effect);
-                const double part = static_cast<double>(++done) / static_cast<double>(children.size());
-                if (!options_.on_progress) continue;
-                const std::lock_guard lock(telling);
-                if (!options_.on_progress((round_ + part) / (options_.max_effects + 1.0))) stop = true;
-            }
+        crew_.each(children.size(), [&](std::size_t k) {
+            if (stop) return;
+            children[k].model = fitter_.with(kept_[children[k].parent], *children[k].effect);
+            const double part = static_cast<double>(++done) / static_cast<double>(children.size());
+            if (!options_.on_progress) return;
+            const std::lock_guard lock(telling);
+            if (!options_.on_progress((round_ + part) / (options_.max_effects + 1.0))) stop = true;
         });
         if (stop) throw UserError("stopped; nothing was written");
     }
@@ -436,9 +434,9 @@ private:
     const Dataset& data_;
     const ExplainOptions& options_;
     Split split_;
+    Crew crew_;
     std::unique_ptr<Rig> rig_;
     Fitter fitter_;
-    Workers workers_;
     std::vector<const EffectInfo*> declared_, tried_;
     FittedModel best_;               ///< that may be named
     std::vector<FittedModel> kept_;  ///< from which the next round begins

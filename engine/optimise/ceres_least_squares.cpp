@@ -1,6 +1,7 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "optimise/least_squares.h"
@@ -11,11 +12,11 @@ namespace {
 /// One residual block on the unit cube of the free numbers.
 class Block final : public ceres::CostFunction {
 public:
-    Block(const LeastSquaresProblem& problem, std::vector<std::size_t> free, std::vector<double> x, double step)
-        : problem_(problem), free_(std::move(free)), x_(std::move(x)), step_(step) {
+    Block(const LeastSquaresProblem& problem, std::vector<std::size_t> free, std::vector<double> x,
+          const LeastSquaresOptions& options)
+        : problem_(problem), free_(std::move(free)), x_(std::move(x)), step_(options.step), crew_(options.crew) {
         set_num_residuals(static_cast<int>(problem.residuals));
         mutable_parameter_block_sizes()->push_back(static_cast<int>(free_.size()));
-        moved_.resize(problem.residuals);
     }
 
     bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
@@ -28,20 +29,24 @@ public:
             std::copy(known_.begin(), known_.end(), residuals);
         } else {
             last_.clear();
-            if (!call(out)) return false;
+            ++evaluations_;
+            if (!call(x_, out)) return false;
             known_.assign(out.begin(), out.end());
             last_ = asked;
         }
         if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-        for (std::size_t k = 0; k < free_.size(); ++k) {
+        evaluations_ += static_cast<int>(free_.size());
+        std::atomic<bool> good{true};
+        crew_.each(free_.size(), [&](std::size_t k) {
+            if (!good) return;
             const double h = u[k] + step_ <= 1.0 ? step_ : -step_;  // inwards
-            x_[free_[k]] = value(k, u[k] + h);
-            if (!call(moved_)) return false;
-            x_[free_[k]] = value(k, u[k]);
+            std::vector<double> x = x_, moved(problem_.residuals);
+            x[free_[k]] = value(k, u[k] + h);
+            if (!call(x, moved)) good = false;
             for (std::size_t i = 0; i < problem_.residuals; ++i)
-                jacobians[0][i * free_.size() + k] = (moved_[i] - residuals[i]) / h;
-        }
-        return true;
+                jacobians[0][i * free_.size() + k] = (moved[i] - residuals[i]) / h;
+        });
+        return good;
     }
 
     double value(std::size_t k, double u) const {
@@ -51,17 +56,17 @@ public:
     int evaluations() const { return evaluations_; }
 
 private:
-    bool call(std::span<double> out) const {
-        ++evaluations_;
-        if (!problem_.residual(x_, out)) return false;
+    bool call(std::span<const double> x, std::span<double> out) const {
+        if (!problem_.residual(x, out)) return false;
         return std::all_of(out.begin(), out.end(), [](double r) { return std::isfinite(r); });
     }
 
     const LeastSquaresProblem& problem_;
     std::vector<std::size_t> free_;
-    mutable std::vector<double> x_, moved_;
+    mutable std::vector<double> x_;
     mutable std::vector<double> last_, known_;  // asked last, and its residuals; empty = none
     double step_;
+    Crew crew_;
     mutable int evaluations_ = 0;
 };
 
@@ -143,7 +148,7 @@ Result minimise_squares(const LeastSquaresProblem& problem, const LeastSquaresOp
     for (int left = options.max_iterations; left > 0; together = false) {
         std::vector<std::size_t> held;
         if (!together) {
-            const Block all(problem, free, result.best, options.step);
+            const Block all(problem, free, result.best, options);
             held = pushed_out(all, u, problem.residuals);
             result.evaluations += all.evaluations();
         }
@@ -157,7 +162,7 @@ Result minimise_squares(const LeastSquaresProblem& problem, const LeastSquaresOp
         if (going.empty()) break;
         std::vector<std::size_t> numbers;
         for (const std::size_t k : going) numbers.push_back(free[k]);
-        auto* block = new Block(problem, numbers, result.best, options.step);  // the ceres::Problem owns it
+        auto* block = new Block(problem, numbers, result.best, options);  // the ceres::Problem owns it
         ceres::Problem solved;
         solved.AddResidualBlock(block, nullptr, at.data());
         for (int k = 0; k < static_cast<int>(at.size()); ++k) {

@@ -128,7 +128,9 @@ TEST(Explain, GivesTheSameAnswerOnAnyNumberOfThreads) {
     options.max_effects = 1;
     const Explanation one = explain(data, options);
     options.threads = 3;
-    EXPECT_EQ(explain(data, options).overlay, one.overlay);
+    const Explanation three = explain(data, options);
+    EXPECT_EQ(three.overlay, one.overlay);
+    EXPECT_EQ(three.after, one.after);
 }
 
 TEST(Explain, LeavesAVibrationUnexplainedButDescribesIt) {
