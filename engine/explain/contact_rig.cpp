@@ -1,6 +1,7 @@
 // Kind wall-contact: the vessel of the data as an elastic shell at rest, pushed by the tool sample by sample; its
 // material is given, nothing is fitted.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -15,11 +16,13 @@ namespace cathlab {
 namespace {
 
 // Models are searched on particles so far apart; what that costs is known of one of them, at first the base model,
-// which is solved on finer ones too, and taken off every model in proportion.  Those in the middle only say how much is
-// left.
+// which is solved on two sets of finer ones too, and taken off every model in proportion.  What goes from one of these
+// to the other says how much is left to none at all: errors fall with the square of the distance [richardson1911].
 constexpr double spacing_mm = 4.0, far_spacing_mm = 9.0;
 constexpr double middle_spacing_mm = 2.5, middle_far_spacing_mm = 6.0;
 constexpr double fine_spacing_mm = 1.5, fine_far_spacing_mm = 3.5;
+constexpr double square_ratio = middle_spacing_mm * middle_spacing_mm / (fine_spacing_mm * fine_spacing_mm);
+constexpr double left_of_step = 1.0 / (square_ratio - 1.0);
 
 // Factors kept of every sample's matrix are some MB each.
 constexpr std::size_t most_factors = 400;
@@ -50,11 +53,11 @@ public:
         walls_.resize(pushes_.size());
         plain_.resize(pushes_.size());
         middle_.resize(pushes_.size());
-        fine_.resize(pushes_.size());
+        finest_.resize(pushes_.size());
         crew_.each(3 * pushes_.size(), [&](std::size_t k) {
             const std::size_t run = k % pushes_.size();
             if (k < pushes_.size()) {  // the longest first
-                fine_[run] = rest_of(run, wall_of(run, fine_spacing_mm, fine_far_spacing_mm), false);
+                finest_[run] = rest_of(run, wall_of(run, fine_spacing_mm, fine_far_spacing_mm), false);
             } else if (k < 2 * pushes_.size()) {
                 middle_[run] = rest_of(run, wall_of(run, middle_spacing_mm, middle_far_spacing_mm), false);
             } else {
@@ -62,24 +65,26 @@ public:
                 plain_[run] = rest_of(run, *walls_[run], true);
             }
         });
+        for (std::size_t run = 0; run < pushes_.size(); ++run) go_on(middle_[run], finest_[run]);
         about_ = plain_;
-        about_fine_ = fine_;
+        about_finest_ = finest_;
     }
 
     bool slow() const override { return true; }
 
-    /// What the finest particles change of those in the middle: finer ones still, and a solid wall in place of a shell,
-    /// may change as much.
+    /// What the finest particles change of those in the middle, nearly twice what they are thought to leave: a solid
+    /// wall in place of a shell changes something, too.
     std::vector<double> own_error() const override {
         std::vector<double> out;
         for (const DataColumn* column : measured_) {
             double square = 0.0, samples = 0.0;
             for (std::size_t run = 0; run < pushes_.size(); ++run)
                 for (std::size_t k = 0; k < pushes_[run].ball_mm.size(); ++k) {
-                    const double off =
+                    const double all =
                         column->quantity == "force"
-                            ? fine_[run].force_mn[k] - middle_[run].force_mn[k]
-                            : (fine_[run].marker_mm[k] - middle_[run].marker_mm[k])[column->quantity.back() - 'x'];
+                            ? finest_[run].force_mn[k] - middle_[run].force_mn[k]
+                            : (finest_[run].marker_mm[k] - middle_[run].marker_mm[k])[column->quantity.back() - 'x'];
+                    const double off = all / (1.0 + left_of_step);
                     square += off * off;
                     samples += 1.0;
                 }
@@ -90,29 +95,31 @@ public:
 
     void anchor(std::span<const EffectTrial> trials) override {
         about_ = plain_;
-        about_fine_ = fine_;
+        about_finest_ = finest_;
         if (!RigEffects(trials).uses(of_wall)) return;
-        std::vector<PushResult> coarse(pushes_.size()), fine(pushes_.size());
-        crew_.each(2 * pushes_.size(), [&](std::size_t k) {
+        std::vector<PushResult> coarse(pushes_.size()), middle(pushes_.size()), finest(pushes_.size());
+        crew_.each(3 * pushes_.size(), [&](std::size_t k) {
             const std::size_t run = k % pushes_.size();
             RigEffects effects(trials);
             if (k < pushes_.size())
-                fine[run] = pushed_on(wall_of(run, fine_spacing_mm, fine_far_spacing_mm), effects, run, pushes_[run]);
+                finest[run] = pushed_on(wall_of(run, fine_spacing_mm, fine_far_spacing_mm), effects, run, pushes_[run]);
+            else if (k < 2 * pushes_.size())
+                middle[run] =
+                    pushed_on(wall_of(run, middle_spacing_mm, middle_far_spacing_mm), effects, run, pushes_[run]);
             else
                 coarse[run] = pushed(effects, run, nullptr);
         });
-        const auto rests = [](const PushResult& result) { return result.at_rest; };
-        if (!std::all_of(coarse.begin(), coarse.end(), rests) || !std::all_of(fine.begin(), fine.end(), rests)) return;
+        for (const auto* results : {&coarse, &middle, &finest})
+            for (const PushResult& result : *results)
+                if (!result.at_rest) return;
+        for (std::size_t run = 0; run < pushes_.size(); ++run) go_on(middle[run], finest[run]);
         about_ = std::move(coarse);
-        about_fine_ = std::move(fine);
+        about_finest_ = std::move(finest);
     }
 
     std::unique_ptr<RigMemory> memory() const override {
         auto out = std::make_unique<Memory>();
-        for (std::size_t run = 0; run < pushes_.size(); ++run) {
-            out->wall.push_back(plain_[run].wall_mm);
-            out->factors.emplace_back(data_.rows() <= most_factors ? pushes_[run].ball_mm.size() : 0);
-        }
+        forget(*out);
         return out;
     }
 
@@ -127,30 +134,31 @@ public:
         RigEffects effects(trials);
         const bool walled = effects.uses(of_wall), read = effects.uses(hook_measure);
         std::vector<PushResult> pushes(pushes_.size());
+        // A law under which one wall does not come to rest is none: the others need not go on.
+        std::atomic<bool> at_rest{true};
         if (walled)
             crew_.each(pushes_.size(), [&](std::size_t run) {
                 RigEffects of_run(trials);
-                pushes[run] = pushed(of_run, run, static_cast<Memory*>(memory));
+                pushes[run] = pushed(of_run, run, static_cast<Memory*>(memory), [&] { return at_rest.load(); });
+                if (!pushes[run].at_rest) at_rest = false;
             });
-        // A law under which one wall does not come to rest is none.
-        const bool at_rest =
-            std::all_of(pushes.begin(), pushes.end(), [](const PushResult& push) { return push.at_rest; });
+        if (!at_rest && memory != nullptr) forget(*static_cast<Memory*>(memory));
         for (std::size_t run = 0; run < pushes_.size(); ++run) {
             const PushResult& own = pushes[run];
             effects.begin_run(static_cast<Index>(run));
             for (std::size_t k = 0; k < pushes_[run].ball_mm.size(); ++k) {
                 const std::size_t row = first_[run] + k;
                 effects.next_row(data_.time_s[row]);
-                Vec3 place = fine_[run].marker_mm[k];
-                double force = fine_[run].force_mn[k];
+                Vec3 place = finest_[run].marker_mm[k];
+                double force = finest_[run].force_mn[k];
                 if (walled && !at_rest) place.setConstant(std::numeric_limits<double>::quiet_NaN());
                 if (walled && at_rest) {
-                    const PushResult &coarse = about_[run], &fine = about_fine_[run];
+                    const PushResult &coarse = about_[run], &finest = about_finest_[run];
                     const Vec3& rest = pushes_[run].marker_mm;
                     const double moved = part_of((own.marker_mm[k] - rest).norm(), (coarse.marker_mm[k] - rest).norm());
-                    place = own.marker_mm[k] + moved * (fine.marker_mm[k] - coarse.marker_mm[k]);
+                    place = own.marker_mm[k] + moved * (finest.marker_mm[k] - coarse.marker_mm[k]);
                     const double pushed = part_of(own.force_mn[k], coarse.force_mn[k]);
-                    force = own.force_mn[k] + pushed * (fine.force_mn[k] - coarse.force_mn[k]);
+                    force = own.force_mn[k] + pushed * (finest.force_mn[k] - coarse.force_mn[k]);
                 }
                 if (!place.allFinite()) {  // came to no rest: as bad as a wall that does not move
                     place = pushes_[run].marker_mm + Vec3::Constant(no_rest_mm);
@@ -186,6 +194,14 @@ private:
         return std::fabs(plain) > nothing ? std::clamp(own / plain, 0.0, most) : 1.0;
     }
 
+    /// From the finest particles to none at all.
+    static void go_on(const PushResult& middle, PushResult& finest) {
+        for (std::size_t k = 0; k < finest.marker_mm.size(); ++k) {
+            finest.marker_mm[k] += left_of_step * (finest.marker_mm[k] - middle.marker_mm[k]);
+            finest.force_mn[k] += left_of_step * (finest.force_mn[k] - middle.force_mn[k]);
+        }
+    }
+
     struct Memory final : RigMemory {
         std::vector<std::vector<std::vector<Vec3>>> wall;                 // (runs, samples)
         std::vector<std::vector<std::shared_ptr<ShellFactors>>> factors;  // (runs, samples) or (runs, 0)
@@ -209,22 +225,31 @@ private:
         return out;
     }
 
-    PushResult pushed(RigEffects& effects, std::size_t run, Memory* memory) const {
+    /// How far others came before they were stopped is not to be seen in what is found next.
+    void forget(Memory& memory) const {
+        memory.wall.clear();
+        memory.factors.clear();
+        for (std::size_t run = 0; run < pushes_.size(); ++run) {
+            memory.wall.push_back(plain_[run].wall_mm);
+            memory.factors.emplace_back(data_.rows() <= most_factors ? pushes_[run].ball_mm.size() : 0);
+        }
+    }
+
+    PushResult pushed(RigEffects& effects, std::size_t run, Memory* memory,
+                      const std::function<bool()>& go_on = {}) const {
         Push push = pushes_[run];
         push.guess = plain_[run].wall_mm;
-        if (memory == nullptr) return pushed_on(*walls_[run], effects, run, push);
+        if (memory == nullptr) return pushed_on(*walls_[run], effects, run, push, go_on);
         push.keep_wall = true;
         push.guess = memory->wall[run];
         push.factors = memory->factors[run];
-        PushResult out = pushed_on(*walls_[run], effects, run, push);
-        if (out.at_rest)
-            memory->wall[run] = std::move(out.wall_mm);
-        else
-            memory->wall[run] = plain_[run].wall_mm;
+        PushResult out = pushed_on(*walls_[run], effects, run, push, go_on);
+        if (out.at_rest) memory->wall[run] = std::move(out.wall_mm);
         return out;
     }
 
-    PushResult pushed_on(const PushedWall& wall, RigEffects& effects, std::size_t run, const Push& push) const {
+    PushResult pushed_on(const PushedWall& wall, RigEffects& effects, std::size_t run, const Push& push,
+                         const std::function<bool()>& go_on = {}) const {
         effects.begin_run(static_cast<Index>(run));
         effects.points(wall.triangles());
         PushedLaw law;
@@ -253,7 +278,7 @@ private:
                 effects.remember_slip(held(i, traction));
             };
         }
-        return wall.push(push, law);
+        return wall.push(push, law, go_on);
     }
 
     std::vector<std::optional<PushedWall>> walls_;  // (runs) dense where each is pushed
@@ -261,8 +286,8 @@ private:
     std::vector<std::size_t> first_;                // (runs) row
     std::vector<PushResult> plain_;                 // (runs) of the base model on them
     std::vector<PushResult> middle_;                // (runs) of the base model on finer ones
-    std::vector<PushResult> fine_;                  // (runs) and on the finest
-    std::vector<PushResult> about_, about_fine_;    // (runs) of the model by which others are corrected
+    std::vector<PushResult> finest_;                // (runs) and on none at all
+    std::vector<PushResult> about_, about_finest_;  // (runs) of the model by which others are corrected
     Crew crew_;
 };
 

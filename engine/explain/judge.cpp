@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/random.h"
 
@@ -65,30 +66,57 @@ double mean_cost(const Columns& residual, const Split& split, std::uint8_t part,
     return rows > 0.0 ? sum / rows : 0.0;
 }
 
+std::vector<double> gains_by_chance(std::span<const Comparison> compared, const Split& split, const LossScale& scale,
+                                    std::uint64_t seed) {
+    constexpr int draws = 10000;
+    const auto blocks = static_cast<std::size_t>(split.blocks);
+    // Gains of the blocks, scaled so that what flips of sign give has the same spread for all.
+    std::vector<std::vector<double>> gains;
+    std::vector<double> observed;
+    for (const auto& [before, after] : compared) {
+        std::vector<double> gain(blocks, 0.0);
+        for (std::size_t c = 0; c < before->size(); ++c)
+            for (std::size_t i = 0; i < (*before)[c].size(); ++i)
+                if (split.held_out[i] != 0 && !std::isnan((*before)[c][i]))
+                    gain[static_cast<std::size_t>(split.block[i])] +=
+                        scale.cost(c, (*before)[c][i]) - scale.cost(c, (*after)[c][i]);
+        double square = 0.0, sum = 0.0;
+        for (const double g : gain) square += g * g;
+        const double size = std::sqrt(square);
+        for (double& g : gain) {
+            g = size > 0.0 ? g / size : 0.0;
+            sum += g;
+        }
+        gains.push_back(std::move(gain));
+        observed.push_back(sum);
+    }
+    std::vector<int> as_large(compared.size(), 0);
+    std::vector<double> sign(blocks);
+    for (int draw = 0; draw < draws; ++draw) {
+        std::uint64_t bits = 0;
+        for (std::size_t b = 0; b < blocks; ++b) {
+            if (b % 64 == 0) bits = random_bits(seed, RandomStream::sampling, static_cast<std::uint64_t>(draw), b / 64);
+            sign[b] = ((bits >> (b % 64)) & 1U) != 0 ? 1.0 : -1.0;
+        }
+        double largest = -std::numeric_limits<double>::infinity();
+        for (const std::vector<double>& gain : gains) {
+            double sum = 0.0;
+            for (std::size_t b = 0; b < blocks; ++b) sum += sign[b] * gain[b];
+            largest = std::max(largest, sum);
+        }
+        constexpr double rounding = 1e-12;
+        for (std::size_t k = 0; k < observed.size(); ++k) as_large[k] += largest >= observed[k] - rounding ? 1 : 0;
+    }
+    std::vector<double> out;
+    for (std::size_t k = 0; k < observed.size(); ++k)
+        out.push_back(observed[k] > 0.0 ? (1.0 + as_large[k]) / (1.0 + draws) : 1.0);
+    return out;
+}
+
 double gain_by_chance(const Columns& before, const Columns& after, const Split& split, const LossScale& scale,
                       std::uint64_t seed) {
-    constexpr int draws = 10000;
-    std::vector<double> gain(static_cast<std::size_t>(split.blocks), 0.0);
-    for (std::size_t c = 0; c < before.size(); ++c)
-        for (std::size_t i = 0; i < before[c].size(); ++i)
-            if (split.held_out[i] != 0 && !std::isnan(before[c][i]))
-                gain[static_cast<std::size_t>(split.block[i])] +=
-                    scale.cost(c, before[c][i]) - scale.cost(c, after[c][i]);
-    std::erase(gain, 0.0);
-    double observed = 0.0;
-    for (const double g : gain) observed += g;
-    if (gain.empty() || observed <= 0.0) return 1.0;
-    int as_large = 0;
-    for (int draw = 0; draw < draws; ++draw) {
-        double sum = 0.0;
-        std::uint64_t bits = 0;
-        for (std::size_t b = 0; b < gain.size(); ++b) {
-            if (b % 64 == 0) bits = random_bits(seed, RandomStream::sampling, static_cast<std::uint64_t>(draw), b / 64);
-            sum += ((bits >> (b % 64)) & 1U) != 0 ? gain[b] : -gain[b];
-        }
-        as_large += sum >= observed ? 1 : 0;
-    }
-    return (1.0 + as_large) / (1.0 + draws);
+    const Comparison one{&before, &after};
+    return gains_by_chance(std::span(&one, 1), split, scale, seed)[0];
 }
 
 }  // namespace cathlab

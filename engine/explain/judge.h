@@ -27,9 +27,20 @@ double known_rows(const Columns& residual, const Split& split, std::uint8_t part
 /// Mean cost of a known row of a part.
 double mean_cost(const Columns& residual, const Split& split, std::uint8_t part, const LossScale& scale);
 
-/// How often chance alone would give the held-out blocks a gain at least as large as they have from `before` to
-/// `after`: their signs are flipped at random, whole blocks at a time, since neighbours know of one another
-/// [edgington1995]. 1 / 10001 at least.
+/// What a model left, and what another one leaves.
+struct Comparison {
+    const Columns* before = nullptr;
+    const Columns* after = nullptr;
+};
+
+/// For each comparison: how often chance alone would give the best of all of them a gain on the held-out blocks, over
+/// the root of the sum of its squares, at least as large as this one's.  The blocks' signs are flipped at random, whole
+/// blocks at a time, since neighbours know of one another [edgington1995], and for all comparisons alike, so that those
+/// which gain in the same blocks count as few [westfall1993]. 1 / 10001 at least.
+std::vector<double> gains_by_chance(std::span<const Comparison> compared, const Split& split, const LossScale& scale,
+                                    std::uint64_t seed);
+
+/// The same of one alone.
 double gain_by_chance(const Columns& before, const Columns& after, const Split& split, const LossScale& scale,
                       std::uint64_t seed);
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <set>
 #include <sstream>
@@ -157,8 +158,9 @@ private:
         fit_all(children);
         std::vector<Child*> accepted, promising;
         const double known = mean_cost(best_.residual, split_, 1, fitter_.scale());
+        by_chance(children);
         for (Child& child : children) {
-            judge(child, static_cast<double>(children.size()));
+            judge(child);
             // A number on its bound may come off it beside another effect, and what is no more than chance while
             // another effect hides it may show beside that one.
             if (child.refused.empty() || child.on_bound) promising.push_back(&child);
@@ -180,6 +182,7 @@ private:
         if (!accepted.empty()) {
             anchor_at(accepted[0]->model);
             best_ = accepted[0]->model;
+            chance_[accepted[0]->effect] = accepted[0]->p;
         }
         std::vector<FittedModel> next;
         for (std::size_t k = 0; k < std::min(rig_->slow() ? std::size_t{1} : kept_models, promising.size()); ++k)
@@ -212,16 +215,24 @@ private:
         if (stop) throw UserError("stopped; nothing was written");
     }
 
-    void judge(Child& child, double tries) {
+    /// By the best of all that were tried.  A parent that was not accepted itself proves nothing: beside it, the last
+    /// model that was has to be beaten.
+    void by_chance(std::vector<Child>& children) const {
+        std::vector<Comparison> beside_parent, beside_best;
+        for (const Child& child : children) {
+            beside_parent.push_back({&kept_[child.parent].residual, &child.model.residual});
+            beside_best.push_back({&best_.residual, &child.model.residual});
+        }
+        const std::vector<double> a = gains_by_chance(beside_parent, split_, fitter_.scale(), options_.seed);
+        const std::vector<double> b = gains_by_chance(beside_best, split_, fitter_.scale(), options_.seed);
+        for (std::size_t k = 0; k < children.size(); ++k) children[k].p = std::max(a[k], b[k]);
+    }
+
+    void judge(Child& child) {
         const FittedModel& parent = kept_[child.parent];
         const LossScale& scale = fitter_.scale();
         const double before = mean_cost(parent.residual, split_, 1, scale);
         child.held_out_cost = mean_cost(child.model.residual, split_, 1, scale);
-        // A parent that was not accepted itself proves nothing: beside it, the last model that was has to be beaten.
-        const auto by_chance = [&](const FittedModel& known) {
-            return gain_by_chance(known.residual, child.model.residual, split_, scale, options_.seed);
-        };
-        child.p = std::min(1.0, tries * std::max(by_chance(parent), by_chance(best_)));
         const auto trial = std::find_if(child.model.effects.begin(), child.model.effects.end(),
                                         [&](const EffectTrial& t) { return t.effect == child.effect; });
         const double gain = 1.0 - std::sqrt(child.held_out_cost / before);
@@ -368,9 +379,15 @@ private:
                 continue;
             }
             const FittedModel without = fitter_.without(best, k);
-            const double p = std::min(
-                1.0, static_cast<double>(tried_.size()) *
-                         gain_by_chance(without.residual, best.residual, split_, fitter_.scale(), options_.seed));
+            // What was taken was the best of all that were tried by that much; what came along with another one is
+            // asked as if each had been tried for it.
+            const auto taken = chance_.find(effect);
+            const double alone =
+                gain_by_chance(without.residual, best.residual, split_, fitter_.scale(), options_.seed);
+            const double p =
+                taken != chance_.end()
+                    ? std::max(taken->second, std::min(1.0, static_cast<double>(best.effects.size()) * alone))
+                    : std::min(1.0, static_cast<double>(tried_.size()) * alone);
             const double gain = 1.0 - std::sqrt(mean_cost(best.residual, split_, 1, fitter_.scale()) /
                                                 mean_cost(without.residual, split_, 1, fitter_.scale()));
             const std::string none = why_no_effect(best.effects[k], fitter_.free_parameters(*effect));
@@ -442,6 +459,7 @@ private:
     std::vector<FittedModel> kept_;  ///< from which the next round begins
     std::vector<double> own_error_;  ///< of the rig
     std::string plain_better_;
+    std::map<const EffectInfo*, double> chance_;  ///< of those that were taken
     int round_ = 0;
     Explanation out_;
 };

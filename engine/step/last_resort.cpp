@@ -14,6 +14,8 @@ constexpr double look_mm = 2.0;
 constexpr double unfolded_mm = 8.0;
 // ... and so far about it samples are looked after.
 constexpr double looked_after_mm = 16.0;
+// Samples that are worth a thread of their own.
+constexpr std::size_t sample_grain = 16;
 
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
@@ -21,11 +23,17 @@ std::size_t at(Index i) {
 
 /// Where samples are deep in the nearest wall.
 std::vector<Vec3> in_folds(const Parts& p, std::span<const DeviceSample> samples) {
+    std::vector<std::uint8_t> folded(samples.size(), 0);
+    p.world->workers().for_ranges(samples.size(), sample_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const DeviceSample& s = samples[i];
+            const SurfacePoint wall = closest(*p.surface, *p.surface_state, s.position, look_mm);
+            folded[i] = wall.found() && s.radius - wall.signed_distance > folded_mm ? 1 : 0;
+        }
+    });
     std::vector<Vec3> places;
-    for (const DeviceSample& s : samples) {
-        const SurfacePoint wall = closest(*p.surface, *p.surface_state, s.position, look_mm);
-        if (wall.found() && s.radius - wall.signed_distance > folded_mm) places.push_back(s.position);
-    }
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        if (folded[i] != 0) places.push_back(samples[i].position);
     return places;
 }
 
