@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/random.h"
 
@@ -68,48 +67,50 @@ double mean_cost(const Columns& residual, const Split& split, std::uint8_t part,
 
 std::vector<double> gains_by_chance(std::span<const Comparison> compared, const Split& split, const LossScale& scale,
                                     std::uint64_t seed) {
-    constexpr int draws = 10000;
-    const auto blocks = static_cast<std::size_t>(split.blocks);
-    // Gains of the blocks, scaled so that what flips of sign give has the same spread for all.
-    std::vector<std::vector<double>> gains;
-    std::vector<double> observed;
-    for (const auto& [before, after] : compared) {
-        std::vector<double> gain(blocks, 0.0);
-        for (std::size_t c = 0; c < before->size(); ++c)
-            for (std::size_t i = 0; i < (*before)[c].size(); ++i)
-                if (split.held_out[i] != 0 && !std::isnan((*before)[c][i]))
-                    gain[static_cast<std::size_t>(split.block[i])] +=
-                        scale.cost(c, (*before)[c][i]) - scale.cost(c, (*after)[c][i]);
-        double square = 0.0, sum = 0.0;
-        for (const double g : gain) square += g * g;
-        const double size = std::sqrt(square);
-        for (double& g : gain) {
-            g = size > 0.0 ? g / size : 0.0;
-            sum += g;
-        }
-        gains.push_back(std::move(gain));
-        observed.push_back(sum);
+    constexpr std::size_t draws = 30000;
+    std::vector<std::size_t> place(static_cast<std::size_t>(split.blocks), 0);  // of a block among those held out
+    for (std::size_t i = 0; i < split.block.size(); ++i)
+        if (split.held_out[i] != 0) place[static_cast<std::size_t>(split.block[i])] = 1;
+    std::size_t blocks = 0;
+    for (std::size_t& p : place) p = p != 0 ? blocks++ : 0;
+    std::vector<std::vector<double>> gains(compared.size(), std::vector<double>(blocks, 0.0));
+    for (std::size_t k = 0; k < compared.size(); ++k) {
+        const Columns &before = *compared[k].before, &after = *compared[k].after;
+        for (std::size_t c = 0; c < before.size(); ++c)
+            for (std::size_t i = 0; i < before[c].size(); ++i)
+                if (split.held_out[i] != 0 && !std::isnan(before[c][i]))
+                    gains[k][place[static_cast<std::size_t>(split.block[i])]] +=
+                        scale.cost(c, before[c][i]) - scale.cost(c, after[c][i]);
     }
-    std::vector<int> as_large(compared.size(), 0);
-    std::vector<double> sign(blocks);
-    for (int draw = 0; draw < draws; ++draw) {
+    // What was seen is the first of the draws, and for each comparison all of them are put in a row.
+    std::vector<std::vector<double>> sums(compared.size(), std::vector<double>(1 + draws, 0.0));
+    std::vector<double> sign(blocks, 1.0);
+    for (std::size_t draw = 0; draw <= draws; ++draw) {
         std::uint64_t bits = 0;
-        for (std::size_t b = 0; b < blocks; ++b) {
-            if (b % 64 == 0) bits = random_bits(seed, RandomStream::sampling, static_cast<std::uint64_t>(draw), b / 64);
+        for (std::size_t b = 0; draw > 0 && b < blocks; ++b) {
+            if (b % 64 == 0) bits = random_bits(seed, RandomStream::sampling, draw - 1, b / 64);
             sign[b] = ((bits >> (b % 64)) & 1U) != 0 ? 1.0 : -1.0;
         }
-        double largest = -std::numeric_limits<double>::infinity();
-        for (const std::vector<double>& gain : gains) {
-            double sum = 0.0;
-            for (std::size_t b = 0; b < blocks; ++b) sum += sign[b] * gain[b];
-            largest = std::max(largest, sum);
-        }
-        constexpr double rounding = 1e-12;
-        for (std::size_t k = 0; k < observed.size(); ++k) as_large[k] += largest >= observed[k] - rounding ? 1 : 0;
+        for (std::size_t k = 0; k < gains.size(); ++k)
+            for (std::size_t b = 0; b < blocks; ++b) sums[k][draw] += sign[b] * gains[k][b];
     }
+    constexpr double all = 1.0 + draws;
+    std::vector<double> rarest(1 + draws, 1.0);  // of a draw's sums: what part of all is as large
+    std::vector<double> seen;
+    for (const std::vector<double>& sum : sums) {
+        std::vector<double> ordered = sum;
+        std::sort(ordered.begin(), ordered.end());
+        for (std::size_t draw = 0; draw <= draws; ++draw) {
+            const auto less = std::lower_bound(ordered.begin(), ordered.end(), sum[draw]) - ordered.begin();
+            const double part = (all - static_cast<double>(less)) / all;
+            rarest[draw] = std::min(rarest[draw], part);
+            if (draw == 0) seen.push_back(sum[0] > 0.0 ? part : 1.0);
+        }
+    }
+    std::sort(rarest.begin(), rarest.end());
     std::vector<double> out;
-    for (std::size_t k = 0; k < observed.size(); ++k)
-        out.push_back(observed[k] > 0.0 ? (1.0 + as_large[k]) / (1.0 + draws) : 1.0);
+    for (const double part : seen)
+        out.push_back(static_cast<double>(std::upper_bound(rarest.begin(), rarest.end(), part) - rarest.begin()) / all);
     return out;
 }
 

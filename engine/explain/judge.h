@@ -33,10 +33,10 @@ struct Comparison {
     const Columns* after = nullptr;
 };
 
-/// For each comparison: how often chance alone would give the best of all of them a gain on the held-out blocks, over
-/// the root of the sum of its squares, at least as large as this one's.  The blocks' signs are flipped at random, whole
-/// blocks at a time, since neighbours know of one another [edgington1995], and for all comparisons alike, so that those
-/// which gain in the same blocks count as few [westfall1993]. 1 / 10001 at least.
+/// For each comparison: how often chance alone would give one of them a gain on the held-out blocks that is as rare for
+/// it as this one's is.  The blocks' signs are flipped at random, whole blocks at a time, since neighbours know of one
+/// another [edgington1995], and for all comparisons alike, so that those which gain in the same blocks count as few
+/// [westfall1993].  1 / 30001 at least.
 std::vector<double> gains_by_chance(std::span<const Comparison> compared, const Split& split, const LossScale& scale,
                                     std::uint64_t seed);
 

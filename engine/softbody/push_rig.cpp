@@ -155,18 +155,56 @@ PushedWall::PushedWall(const PushRig& rig)
     rest_ = sample.position;
     area_mm2_ = sample.area_mm2;
     thickness_mm_ = rig.thickness_mm;
-    // Particles are sparse: those of the last row stand for the ring itself.
-    for (const Vec3& p : rest_)
-        fixed_.push_back(std::any_of(rig.held.begin(), rig.held.end(), [&](const HeldDisc& disc) {
-            const double reach = 0.6 * spacing_at(p);
-            const Vec3 off = p - disc.center;
-            return std::fabs(off.dot(disc.normal)) <= disc.half_thickness_mm + reach &&
-                   off.norm() <= disc.radius_mm + reach;
-        }));
+    // Particles are sparse, and none lies on the rim of an open end: those of the last row stand for the ring that is
+    // held, and stand on it.  A wall that is held half a spacing too early is too short.
+    const auto held_by = [&](const HeldDisc& disc, const Vec3& p, double reach) {
+        const Vec3 off = p - disc.center;
+        return std::fabs(off.dot(disc.normal)) <= disc.half_thickness_mm + reach &&
+               off.norm() <= disc.radius_mm + reach;
+    };
+    fixed_.assign(rest_.size(), 0);
+    std::vector<std::uint8_t> moved(rest_.size(), 0);
+    for (const HeldDisc& disc : rig.held) {
+        std::vector<Vec3> ring, taken;
+        for (const Vec3& v : middle.vertices)
+            if (held_by(disc, v, 0.0)) ring.push_back(v);
+        std::vector<std::size_t> beside;
+        for (std::size_t i = 0; i < rest_.size(); ++i) {
+            if (fixed_[i] != 0 || !held_by(disc, rest_[i], 0.6 * spacing_at(rest_[i]))) continue;
+            fixed_[i] = 1;
+            if (held_by(disc, rest_[i], 0.0))
+                taken.push_back(rest_[i]);
+            else
+                beside.push_back(i);
+        }
+        for (const std::size_t i : beside) {
+            const Vec3 p = rest_[i];
+            const auto nearest = [&](const std::vector<Vec3>& places, const Vec3& from) {
+                return *std::min_element(places.begin(), places.end(), [&](const Vec3& a, const Vec3& b) {
+                    return (a - from).squaredNorm() < (b - from).squaredNorm();
+                });
+            };
+            if (ring.empty()) break;
+            const Vec3 place = nearest(ring, p);
+            // Of two, one behind the other, the second stays.
+            if (!taken.empty() && (nearest(taken, place) - place).norm() < 0.5 * spacing_at(p)) continue;
+            rest_[i] = place;
+            moved[i] = 1;
+            taken.push_back(place);
+        }
+    }
+    // Three neighbours on one ring may lie in a line, and have nothing to say.
+    std::vector<Triangle> triangles = sample.triangles;
+    std::erase_if(triangles, [&](const Triangle& t) {
+        const auto all = [&](const std::vector<std::uint8_t>& marks) {
+            return std::all_of(t.begin(), t.end(), [&](Index corner) { return marks[at(corner)] != 0; });
+        };
+        return all(fixed_) && std::any_of(t.begin(), t.end(), [&](Index corner) { return moved[at(corner)] != 0; });
+    });
     if (std::count(fixed_.begin(), fixed_.end(), 1) < 3)
         throw UserError("the wall is held nowhere: no three particles lie within the discs of [[setup.fixed]]");
     const ShellMaterial material{rig.young_kpa, rig.poisson, rig.thickness_mm};
-    shell_ = build_shell(rest_, sample.triangles, {&material, 1});
+    shell_ = build_shell(rest_, triangles, {&material, 1});
     const Eigen::SparseMatrix<double> k = shell_stiffness(shell_, rest_);
     holding_.assign(rest_.size(), 0.0);
     for (std::size_t i = 0; i < rest_.size(); ++i)

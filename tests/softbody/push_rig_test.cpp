@@ -45,6 +45,20 @@ TEST(PushRig, ForceIsProportionalToTheModulus) {
     EXPECT_NEAR(stiff / soft, 2.0, 1e-3);
 }
 
+TEST(PushRig, TheWallIsAsLongOnSparseParticlesAsOnDenseOnes) {
+    // Particles of a last row that were held where they lie would be a wall shorter by a spacing, a seventh here.
+    const auto force = [](double spacing, double far_spacing) {
+        PushRig rig = held_tube(60.0);
+        rig.particle_spacing_mm = spacing;
+        rig.far_spacing_mm = far_spacing;
+        rig.looked_at = outward(4.0).ball_mm;
+        return PushedWall(rig).push(outward(4.0)).force_mn.back();
+    };
+    const double dense = force(1.5, 3.5);
+    EXPECT_NEAR(force(2.5, 6.0) / dense, 1.0, 0.08);
+    EXPECT_NEAR(force(2.5, 9.0) / dense, 1.0, 0.08);
+}
+
 TEST(PushRig, UnloadingIsLoadingOnceMore) {
     const PushedWall wall(held_tube(60.0));
     Push push = outward(1.0);
