@@ -352,7 +352,11 @@ std::vector<std::vector<double>> Fitter::starts(const FittedModel& from, const E
     const Parameter& range = effect.parameters[period];
     double longest = 0.0;
     for (const double t : data.time_s) longest = std::max(longest, t);
-    for (double p = range.minimum; p <= std::min(range.maximum, 2.0 * longest); p *= 1.5) periods.push_back(p);
+    double period_s = range.minimum;
+    while (period_s <= std::min(range.maximum, 2.0 * longest)) {
+        periods.push_back(period_s);
+        period_s *= 1.5;
+    }
     for (const auto& column : from.residual) {
         std::vector<double> seen = column;
         for (std::size_t i = 0; i < seen.size(); ++i)

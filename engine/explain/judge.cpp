@@ -109,6 +109,7 @@ std::vector<double> gains_by_chance(std::span<const Comparison> compared, const 
     }
     std::sort(rarest.begin(), rarest.end());
     std::vector<double> out;
+    out.reserve(seen.size());
     for (const double part : seen)
         out.push_back(static_cast<double>(std::upper_bound(rarest.begin(), rarest.end(), part) - rarest.begin()) / all);
     return out;

@@ -160,8 +160,8 @@ Result minimise_squares(const LeastSquaresProblem& problem, const LeastSquaresOp
             at.push_back(u[k]);
         }
         if (going.empty()) break;
-        std::vector<std::size_t> numbers;
-        for (const std::size_t k : going) numbers.push_back(free[k]);
+        std::vector<std::size_t> numbers(going.size());
+        std::transform(going.begin(), going.end(), numbers.begin(), [&](std::size_t k) { return free[k]; });
         auto* block = new Block(problem, numbers, result.best, options);  // the ceres::Problem owns it
         ceres::Problem solved;
         solved.AddResidualBlock(block, nullptr, at.data());
