@@ -87,11 +87,7 @@ public:
         choose_candidates();
         FittedModel base = fitter_.begin(declared_);
         out_.split = split_;
-        own_error_ = rig_->own_error();
-        double square = 0.0;
-        const std::size_t judged = split_.judged > 0 ? std::min(split_.judged, own_error_.size()) : own_error_.size();
-        for (std::size_t c = 0; c < judged; ++c) square += own_error_[c] * own_error_[c] / static_cast<double>(judged);
-        out_.model_error = std::sqrt(square);
+        ask_own_error();
         out_.before = base.residual;
         out_.train_before = rms_of(base.residual, split_, 0);
         out_.held_out_before = rms_of(base.residual, split_, 1);
@@ -192,10 +188,20 @@ private:
         return !(left <= floor_factor * std::hypot(data_.sensor_noise, out_.model_error));  // explained
     }
 
+    /// How far the model is off as it is corrected now.
+    void ask_own_error() {
+        own_error_ = rig_->own_error();
+        double square = 0.0;
+        const std::size_t judged = split_.judged > 0 ? std::min(split_.judged, own_error_.size()) : own_error_.size();
+        for (std::size_t c = 0; c < judged; ++c) square += own_error_[c] * own_error_[c] / static_cast<double>(judged);
+        out_.model_error = std::sqrt(square);
+    }
+
     /// What the rig corrects, it corrects about this model from now on.
     void anchor_at(FittedModel& model) {
         if (!rig_->slow()) return;
         rig_->anchor(model.effects);
+        ask_own_error();
         model.residual = rig_->residual(model.base, model.effects);
         fitter_.refit(model, 6);
     }
@@ -242,6 +248,9 @@ private:
             child.refused = "the held-out error falls by less than 1 %";
         else if (!beyond_own_error(parent.residual, child.model.residual))
             child.refused = "it explains less than the base model is itself off";
+        else if (split_.judged > 0 &&
+                 rms_of(child.model.residual, split_, 1) > (1.0 + least_gain) * rms_of(parent.residual, split_, 1))
+            child.refused = "it comes nearer to the force alone, and further from what is judged";
         else
             child.refused = why_no_effect(*trial, fitter_.free_parameters(*child.effect));
         constexpr double much = 0.03;

@@ -112,7 +112,7 @@ void make_elastic(const WallSample& sample, const WallParameters& parameters, So
         }
         material.push_back(m);
     }
-    model.shell = build_shell(sample.position, sample.triangles, material, sample.along);
+    model.shell = build_shell(sample.position, sample.triangles, material, {.along = sample.along});
     model.elastic = pack_shell(model.shell);
     model.stiffness = holding_stiffness(model.shell, model.rest);
 }

@@ -21,6 +21,7 @@ namespace {
 constexpr double mesh_per_spacing = 0.4;  // edges of the fine surface, of the particles' spacing
 constexpr double growth = 0.3;            // of the spacing, a mm away from where the wall is looked at
 constexpr double force_tolerance_mn = 1e-2;
+constexpr double sheared_thicknesses = 3.0;  // beyond the ball
 constexpr int marker_rounds = 50;
 
 std::size_t at(Index i) {
@@ -204,13 +205,27 @@ PushedWall::PushedWall(const PushRig& rig)
     if (std::count(fixed_.begin(), fixed_.end(), 1) < 3)
         throw UserError("the wall is held nowhere: no three particles lie within the discs of [[setup.fixed]]");
     const ShellMaterial material{rig.young_kpa, rig.poisson, rig.thickness_mm};
-    shell_ = build_shell(rest_, triangles, {&material, 1});
+    shell_ = build_shell(rest_, triangles, {&material, 1}, {.held = fixed_, .stretched_sections = true});
     const Eigen::SparseMatrix<double> k = shell_stiffness(shell_, rest_);
     holding_.assign(rest_.size(), 0.0);
     for (std::size_t i = 0; i < rest_.size(); ++i)
         for (int axis = 0; fixed_[i] && axis < 3; ++axis)
             holding_[i] = std::max(
                 holding_[i], k.coeff(static_cast<Eigen::Index>(3 * i) + axis, static_cast<Eigen::Index>(3 * i) + axis));
+    // Where the ball may be it is sheared, too, which particles much further apart than it is thick do not see.
+    std::vector<std::uint8_t> sheared(rest_.size(), 0);
+    for (std::size_t i = 0; i < rest_.size(); ++i) {
+        const auto near = [&](const Vec3& place) {
+            return (place - rest_[i]).norm() < ball_radius_mm_ + sheared_thicknesses * rig.thickness_mm;
+        };
+        sheared[i] = fixed_[i] == 0 && spacing_at(rest_[i]) < 2.0 * rig.thickness_mm &&
+                     std::any_of(rig.looked_at.begin(), rig.looked_at.end(), near);
+    }
+    give_shear(shell_, sheared);
+    rest_.resize(shell_.unknowns(), Vec3::Zero());
+    area_mm2_.resize(shell_.unknowns(), 0.0);
+    holding_.resize(shell_.unknowns(), 0.0);
+    fixed_.resize(shell_.unknowns(), 0);
 }
 
 PushResult PushedWall::push(const Push& push, const std::function<bool()>& go_on) const {
@@ -304,7 +319,7 @@ private:
                     std::vector<Eigen::Triplet<double>>& stiffness) const {
         if (law_.support_kpa_per_mm <= 0.0) return 0.0;
         double potential = 0.0;
-        for (std::size_t i = 0; i < x.size(); ++i) {
+        for (std::size_t i = 0; i < wall_.particles(); ++i) {
             const double k = law_.support_kpa_per_mm * wall_.area_mm2_[i];
             const Vec3 off = x[i] - wall_.rest_[i];
             potential += 0.5 * k * off.squaredNorm();

@@ -85,7 +85,7 @@ public:
     PushResult push(const Push& push, const PushedLaw& law, const std::function<bool()>& go_on = {}) const;
     std::size_t triangles() const { return shell_.triangles.size(); }
 
-    std::size_t particles() const { return rest_.size(); }
+    std::size_t particles() const { return shell_.particles; }
 
 private:
     class Sample;

@@ -19,10 +19,7 @@ using Eigen::Vector2d;
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
 using Matrix23 = Eigen::Matrix<double, 2, 3>;
 
-// A patch whose weights are larger than this, in units of 1 / (twice the triangle's area), is too near a conic for a
-// quadratic through its six points: the next ring joins it.
-constexpr double largest_weight = 6.0;
-// Directions in which a patch at an open edge says next to nothing about curvature are left out.
+// What a slope's particles say of less than this part of what they say best is not asked of them.
 constexpr double least_singular = 0.05;
 constexpr double least_det = 1e-12;
 
@@ -99,7 +96,7 @@ public:
         edge_ = std::move(reached);
     }
     const std::vector<Index>& particles() const { return particle_; }
-    const std::vector<Vector2d>& places() const { return place_; }
+    const Vector2d& place_of(Index particle) const { return place_[find(particle)]; }
 
 private:
     struct Reached {
@@ -131,37 +128,157 @@ private:
     std::vector<Reached> edge_;
 };
 
-/// Weights of second derivatives (N x 3: 11, 22, 12): a quadratic fitted to what a linear field leaves.  They give 0
-/// for linear fields exactly, whatever the patch.
-Eigen::MatrixXd second_derivatives(const std::vector<Vector2d>& places, double scale) {
-    const auto n = static_cast<Eigen::Index>(places.size());
-    Vector2d middle = Vector2d::Zero();
-    for (const Vector2d& p : places) middle += p / static_cast<double>(n);
-    Eigen::MatrixXd linear(n, 3), quadratic(n, 3);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const Vector2d p = (places[static_cast<std::size_t>(i)] - middle) / scale;
-        linear.row(i) << 1.0, p.x(), p.y();
-        quadratic.row(i) << 0.5 * p.x() * p.x(), 0.5 * p.y() * p.y(), p.x() * p.y();
+/// How position changes across an edge, at its middle, by weights on particles; outward as `triangle` has it.
+struct EdgeSlope {
+    std::size_t triangle = 0;
+    std::vector<std::pair<Index, double>> weight;  // 1/mm
+    Vec3 held = Vec3::Zero();                      // ... or a direction that stays
+};
+
+/// Slopes across all edges: three a triangle, the two triangles of an edge have one in common.
+class EdgeSlopes {
+public:
+    EdgeSlopes(std::span<const Vec3> rest, std::span<const Triangle> triangles, std::span<const std::uint8_t> held)
+        : rest_(rest), triangles_(triangles), held_(held), neighbours_(triangles), number_(triangles.size()) {
+        for (std::size_t t = 0; t < triangles.size(); ++t)
+            for (int k = 0; k < 3; ++k) {
+                const Index other = neighbours_.across(t, k);
+                if (other >= 0 && at(other) < t) continue;
+                const auto number = static_cast<Index>(slope_.size());
+                number_[t][k] = number;
+                if (other >= 0) number_[at(other)][entered(at(other), t)] = number;
+                slope_.push_back(slope(t, k));
+            }
     }
-    const Eigen::MatrixXd kept =
-        Eigen::MatrixXd::Identity(n, n) - linear * (linear.transpose() * linear).inverse() * linear.transpose();
-    Eigen::JacobiSVD<Eigen::MatrixXd> svd(kept * quadratic, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    svd.setThreshold(least_singular);
-    return (svd.solve(kept) / (scale * scale)).transpose();
+    const EdgeSlope& of(std::size_t triangle, int edge) const { return slope_[at(number_[triangle][edge])]; }
+
+private:
+    int entered(std::size_t triangle, std::size_t from) const {
+        int k = 0;
+        while (neighbours_.across(triangle, k) != static_cast<Index>(from)) ++k;
+        return k;
+    }
+    /// What lies across the other two edges of a triangle.
+    void add_beside(std::size_t triangle, int edge, std::vector<Index>& particles) const {
+        for (int k = 0; k < 3; ++k) {
+            const Index next = neighbours_.across(triangle, k);
+            if (k == edge || next < 0) continue;
+            particles.push_back(triangles_[at(next)][(entered(at(next), triangle) + 2) % 3]);
+        }
+    }
+
+    EdgeSlope slope(std::size_t triangle, int k) const {
+        EdgeSlope out;
+        out.triangle = triangle;
+        const Triangle& t = triangles_[triangle];
+        const Index a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3], other = neighbours_.across(triangle, k);
+        if (other < 0 && !held_.empty() && held_[at(a)] != 0 && held_[at(b)] != 0) {
+            const Vec3 along = (rest_[at(b)] - rest_[at(a)]).normalized(), off = rest_[at(c)] - rest_[at(a)];
+            out.held = -(off - off.dot(along) * along).normalized();
+            return out;
+        }
+        Patch patch(rest_, triangles_, neighbours_, triangle);
+        patch.grow();
+        patch.grow();
+        std::vector<Index> particles{a, b, c};
+        if (other >= 0) {
+            const int back = entered(at(other), triangle);
+            particles.push_back(triangles_[at(other)][(back + 2) % 3]);
+            add_beside(triangle, k, particles);
+            add_beside(at(other), back, particles);
+            std::sort(particles.begin() + 4, particles.end());
+            particles.erase(std::unique(particles.begin() + 4, particles.end()), particles.end());
+            for (std::size_t j = particles.size(); j-- > 4;)
+                if (std::find(particles.begin(), particles.begin() + 4, particles[j]) != particles.begin() + 4)
+                    particles.erase(particles.begin() + static_cast<std::ptrdiff_t>(j));
+        } else {
+            for (const Index p : patch.particles())
+                if (p != a && p != b && p != c) particles.push_back(p);
+        }
+        // From the edge's middle outward and along it, in lengths of it.
+        const Vector2d from = patch.place_of(a), to = patch.place_of(b), middle = 0.5 * (from + to);
+        const double length = (to - from).norm();
+        const Vector2d along = (to - from) / length, out_of(along.y(), -along.x());
+        const auto n = static_cast<Eigen::Index>(particles.size());
+        Eigen::MatrixXd linear(n, 3), quadratic(n, 3);
+        for (Eigen::Index j = 0; j < n; ++j) {
+            const Vector2d off = (patch.place_of(particles[static_cast<std::size_t>(j)]) - middle) / length;
+            const double s = off.dot(out_of), u = off.dot(along);
+            linear.row(j) << 1.0, s, u;
+            quadratic.row(j) << 0.5 * s * s, s * u, 0.5 * u * u;
+        }
+        // Of what is linear on each of the two triangles, weighed so that a bend about the edge is seen truly ...
+        Eigen::VectorXd weight = Eigen::VectorXd::Zero(n);
+        const double depth = -linear(2, 1), beyond = other >= 0 ? linear(3, 1) : 0.0;
+        const auto add = [&](Eigen::Index corner, double share) {
+            weight[corner] += share;
+            weight[0] -= share * (0.5 - linear(corner, 2));
+            weight[1] -= share * (0.5 + linear(corner, 2));
+        };
+        add(2, -(other >= 0 ? beyond / (depth + beyond) : 1.0) / depth);
+        if (other >= 0) add(3, depth / (depth + beyond) / beyond);
+        // ... and so little more that every quadratic is; linear fields stay as they are.
+        const Eigen::MatrixXd kept =
+            Eigen::MatrixXd::Identity(n, n) - linear * (linear.transpose() * linear).inverse() * linear.transpose();
+        Eigen::JacobiSVD<Eigen::MatrixXd> svd((kept * quadratic).transpose(),
+                                              Eigen::ComputeThinU | Eigen::ComputeThinV);
+        svd.setThreshold(least_singular);
+        weight -= svd.solve(quadratic.transpose() * weight);
+        for (Eigen::Index j = 0; j < n; ++j)
+            out.weight.emplace_back(particles[static_cast<std::size_t>(j)], weight[j] / length);
+        return out;
+    }
+
+    std::span<const Vec3> rest_;
+    std::span<const Triangle> triangles_;
+    std::span<const std::uint8_t> held_;
+    Neighbours neighbours_;
+    std::vector<Triangle> number_;  // (triangles) of the slope across each edge
+    std::vector<EdgeSlope> slope_;
+};
+
+/// Second derivatives by the slopes across a triangle's edges (Gauss).
+void set_bending(ShellTriangle& triangle, std::span<const Vec3> rest, const EdgeSlopes& slopes, std::size_t number) {
+    const auto add = [&](Index particle, const Vec3& weight) {
+        const auto found = std::find(triangle.patch.begin(), triangle.patch.end(), particle);
+        if (found != triangle.patch.end()) {
+            triangle.second[static_cast<std::size_t>(found - triangle.patch.begin())] += weight;
+        } else {
+            triangle.patch.push_back(particle);
+            triangle.second.push_back(weight);
+        }
+    };
+    const Triangle& t = triangle.corner;
+    for (const Index corner : t) add(corner, Vec3::Zero());
+    const Vec3 first = (rest[at(t[1])] - rest[at(t[0])]).normalized();
+    const Vec3 normal = first.cross(rest[at(t[2])] - rest[at(t[0])]).normalized(), second = normal.cross(first);
+    for (int k = 0; k < 3; ++k) {
+        const Index a = t[k], b = t[(k + 1) % 3];
+        const Vec3 edge = rest[at(b)] - rest[at(a)];
+        const double length = edge.norm();
+        const Vector2d along(edge.dot(first) / length, edge.dot(second) / length), out_of(along.y(), -along.x());
+        const Vec3 across = length / triangle.area_mm2 *
+                            Vec3(out_of.x() * out_of.x(), out_of.y() * out_of.y(), out_of.x() * out_of.y());
+        const Vec3 twist = length / triangle.area_mm2 *
+                           Vec3(out_of.x() * along.x(), out_of.y() * along.y(),
+                                0.5 * (out_of.x() * along.y() + out_of.y() * along.x()));
+        add(a, -twist / length);
+        add(b, twist / length);
+        const EdgeSlope& slope = slopes.of(number, k);
+        const double side = slope.triangle == number ? 1.0 : -1.0;
+        for (const auto& [particle, weight] : slope.weight) add(particle, side * weight * across);
+        triangle.held_second += slope.held * across.transpose();
+    }
 }
 
-void set_bending(ShellTriangle& triangle, std::span<const Vec3> rest, std::span<const Triangle> triangles,
-                 const Neighbours& neighbours, std::size_t centre) {
-    Patch patch(rest, triangles, neighbours, centre);
-    const double scale = std::sqrt(2.0 * triangle.area_mm2);
-    patch.grow();
-    Eigen::MatrixXd weights = second_derivatives(patch.places(), scale);
-    if (patch.particles().size() < 6 || weights.cwiseAbs().maxCoeff() * scale * scale > largest_weight) {
-        patch.grow();
-        weights = second_derivatives(patch.places(), scale);
-    }
-    triangle.patch = patch.particles();
-    for (Eigen::Index j = 0; j < weights.rows(); ++j) triangle.second.emplace_back(weights.row(j));
+Vec3 components(const Matrix2d& c) {
+    return {c(0, 0), c(1, 1), c(0, 1)};
+}
+
+Matrix2d tensor(const Vec3& s) {
+    Matrix2d out;
+    out << s[0], s[2], s[2], s[1];
+    return out;
 }
 
 /// A triangle as it stands.
@@ -229,27 +346,101 @@ Matrix23 corner_gradients(const ShellTriangle& t) {
 
 /// Second derivatives of position: columns 11, 22, 12.
 Mat3 second_of(const ShellTriangle& t, std::span<const Vec3> x) {
-    Mat3 b = Mat3::Zero();
+    Mat3 b = t.held_second;
     const Vec3& origin = x[at(t.patch.front())];  // the weights add up to nothing: only differences count
-    for (std::size_t j = 1; j < t.patch.size(); ++j) b += (x[at(t.patch[j])] - origin) * t.second[j].transpose();
+    for (std::size_t j = 1; j < t.bent; ++j) b += (x[at(t.patch[j])] - origin) * t.second[j].transpose();
     return b;
 }
 
-/// Of the energy per area, by (kappa 11, 22, 12).
-Mat3 bending_matrix(const ShellTriangle& t) {
-    Mat3 d;
-    d << 1.0, t.poisson, 0.0, t.poisson, 1.0, 0.0, 0.0, 0.0, 2.0 * (1.0 - t.poisson);
-    return t.bending_mn_mm * d;
+/// How the heights of its corners rise over the triangle.
+Vector2d shear_of(const ShellTriangle& t, const Matrix23& gradients, std::span<const Vec3> x) {
+    Vector2d rise = Vector2d::Zero();
+    for (int c = 0; c < 3; ++c)
+        if (t.height[c] >= 0) rise += x[at(t.height[c])].x() * gradients.col(c);
+    return rise;
 }
+
+/// kappa G t of a section that is sheared, mN/mm.
+double shear_stiffness(const ShellTriangle& t) {
+    constexpr double part = 5.0 / 6.0;
+    return part * t.mu_kpa * t.thickness_mm;
+}
+
+/// What bending stores of a triangle as it stands, per area at rest, and how that goes with what it is bent by.
+struct Bending {
+    Matrix2d raised = Matrix2d::Identity();  // C^-1 where the section is the stretched wall's
+    Matrix2d bent, rest, kappa;              // b without what is shear, at rest; what the section is bent by
+    bool stretched;
+    double thinner = 1.0, a = 0.0, stiff = 0.0;
+    double energy = 0.0,
+           pull = 0.0;  // of kappa; and of what pulls at the section, further from its middle on a longer way
+
+    Bending(const ShellTriangle& t, const Now& now, const Mat3& second, std::span<const Vec3> x)
+        : stretched(t.stretched_section), a(t.thinning), stiff(t.bending_mn_mm * (1.0 - t.poisson)) {
+        Vec3 b = second.transpose() * now.normal;
+        for (std::size_t j = t.bent; j < t.patch.size(); ++j) b -= x[at(t.patch[j])].x() * t.second[j];
+        bent = tensor(b);
+        if (stretched) {
+            raised = now.c_inverse;
+            thinner = std::sqrt(now.thinner);
+        }
+        rest = tensor(t.rest_curvature);
+        kappa = thinner * bent - rest;
+        const Matrix2d q = thinner * raised * kappa;
+        energy = 0.5 * stiff * (a * q.trace() * q.trace() + (q * q).trace());
+        if (!stretched) return;
+        const double y = now.thinner;
+        const Matrix2d pb = raised * bent;
+        pull = 0.25 * stiff *
+               (y * (pb * bent).trace() - y * y * (pb * pb).trace() + y * (raised * rest * rest).trace() -
+                (rest * rest).trace());
+    }
+    /// By b, (11, 22, 12).
+    Vec3 moment() const {
+        Matrix2d m = by_kappa();
+        if (stretched) {
+            const double y = thinner * thinner;
+            const Matrix2d pb = raised * bent;
+            m += 0.25 * stiff * y * (pb + pb.transpose() - 2.0 * y * pb * raised);
+        }
+        return {m(0, 0), m(1, 1), 2.0 * m(0, 1)};
+    }
+    /// Twice the derivative by C: as a second Piola-Kirchhoff stress times thickness.  Zero for a section at rest.
+    Matrix2d by_c() const {
+        const Matrix2d pk = raised * kappa, pkp = pk * raised, pb = raised * bent, pbp = pb * raised;
+        const double y = thinner * thinner;
+        const Matrix2d pr = raised * rest;
+        return -2.0 * y * stiff * (a * pk.trace() * pkp + pk * pkp) -
+               a * (2.0 * energy + by_kappa().cwiseProduct(bent).sum()) * raised -
+               0.5 * stiff * y *
+                   (a * ((pb * bent).trace() - 2.0 * y * (pb * pb).trace() + (pr * rest).trace()) * raised +
+                    pb * pb.transpose() - 2.0 * y * pb * pbp + pr * pr.transpose());
+    }
+    /// How raised kappa times thinner changes with b and with C.
+    Matrix2d change(const Matrix2d& db, const Matrix2d& dc) const {
+        const double thins = -0.5 * a * (raised * dc).trace();
+        const Matrix2d turned = dc * raised * kappa;
+        return thinner * raised *
+               (thinner * db + thinner * thins * bent - 0.5 * (turned + turned.transpose()) + thins * kappa);
+    }
+
+private:
+    /// As far as it goes by kappa.
+    Matrix2d by_kappa() const {
+        return thinner * thinner * thinner * stiff * (a * (raised * kappa).trace() * raised + raised * kappa * raised);
+    }
+};
 
 }  // namespace
 
 ShellModel build_shell(std::span<const Vec3> rest, std::span<const Triangle> triangles,
-                       std::span<const ShellMaterial> material, std::span<const Vec3> along) {
+                       std::span<const ShellMaterial> material, const ShellOptions& options) {
+    const std::span<const Vec3> along = options.along;
+    CATHLAB_CHECK(options.held.empty() || options.held.size() == rest.size(), "one mark a particle");
     CATHLAB_CHECK(along.empty() || along.size() == rest.size(), "one direction a particle");
     CATHLAB_CHECK(material.size() == 1 || material.size() == triangles.size(), "one material, or one a triangle");
     for (const ShellMaterial& m : material) check_material(m);
-    const Neighbours neighbours(triangles);
+    const EdgeSlopes slopes(rest, triangles, options.held);
     ShellModel model;
     model.particles = rest.size();
     for (std::size_t k = 0; k < triangles.size(); ++k) {
@@ -274,11 +465,28 @@ ShellModel build_shell(std::span<const Vec3> rest, std::span<const Triangle> tri
         if (!along.empty()) t.round = round_of(t, rest, along);
         t.bending_mn_mm =
             m.young_kpa * m.thickness_mm * m.thickness_mm * m.thickness_mm / (12.0 * (1.0 - m.poisson * m.poisson));
-        set_bending(t, rest, triangles, neighbours, k);
+        set_bending(t, rest, slopes, k);
+        t.bent = t.patch.size();
+        t.stretched_section = options.stretched_sections;
         t.rest_curvature = second_of(t, rest).transpose() * Now(t, rest).normal;
         model.triangles.push_back(std::move(t));
     }
     return model;
+}
+
+void give_shear(ShellModel& model, std::span<const std::uint8_t> where) {
+    CATHLAB_CHECK(where.size() == model.particles && model.heights == 0, "one mark a particle, given once");
+    std::vector<Index> height(model.particles, -1);
+    for (std::size_t i = 0; i < where.size(); ++i)
+        if (where[i] != 0) height[i] = static_cast<Index>(model.unknowns()), ++model.heights;
+    for (ShellTriangle& t : model.triangles) {
+        for (std::size_t j = 0; j < t.bent; ++j) {
+            if (height[at(t.patch[j])] < 0) continue;
+            t.patch.push_back(height[at(t.patch[j])]);
+            t.second.push_back(t.second[j]);
+        }
+        for (int c = 0; c < 3; ++c) t.height[c] = height[at(t.corner[c])];
+    }
 }
 
 namespace {
@@ -291,16 +499,27 @@ void add_membrane_force(const ShellTriangle& t, const Now& now, const Matrix2d& 
 void add_bending_force(const ShellTriangle& t, const Now& now, std::span<const Vec3> x, std::span<Vec3> force) {
     const Matrix23 g = corner_gradients(t);
     const Mat3 b = second_of(t, x);
-    const Vec3 moment = t.area_mm2 * (bending_matrix(t) * (b.transpose() * now.normal - t.rest_curvature));
+    const Bending bending(t, now, b, x);
+    const Vec3 moment = t.area_mm2 * bending.moment();
     // The normal turns with the triangle: dn = - sum over g of (n . da_g) a^g.
     const Vector2d turned = (now.gradient * now.c_inverse).transpose() * (b * moment);
     for (int c = 0; c < 3; ++c) force[at(t.corner[c])] += g.col(c).dot(turned) * now.normal;
-    for (std::size_t j = 0; j < t.patch.size(); ++j) force[at(t.patch[j])] -= t.second[j].dot(moment) * now.normal;
+    if (t.stretched_section) {
+        const Mat3 drawn = -t.area_mm2 * now.gradient * bending.by_c() * g;
+        for (int c = 0; c < 3; ++c) force[at(t.corner[c])] += drawn.col(c);
+    }
+    for (std::size_t j = 0; j < t.bent; ++j) force[at(t.patch[j])] -= t.second[j].dot(moment) * now.normal;
+    for (std::size_t j = t.bent; j < t.patch.size(); ++j) force[at(t.patch[j])].x() += t.second[j].dot(moment);
+    if (t.bent == t.patch.size()) return;
+    const Vector2d rise = t.area_mm2 * shear_stiffness(t) * shear_of(t, g, x);
+    for (int c = 0; c < 3; ++c)
+        if (t.height[c] >= 0) force[at(t.height[c])].x() -= g.col(c).dot(rise);
 }
 
 /// slope(dC) = dS.
 template <class Slope, class Add>
-void add_stiffness(const ShellTriangle& t, const Now& now, const Matrix2d& stress, const Slope& slope, const Add& add) {
+void add_stiffness(const ShellTriangle& t, const Now& now, std::span<const Vec3> x, const Matrix2d& stress,
+                   const Slope& slope, const Add& add) {
     const Eigen::SelfAdjointEigenSolver<Matrix2d> axes(stress);
     const Matrix2d pulled =
         axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.eigenvectors().transpose();
@@ -317,11 +536,39 @@ void add_stiffness(const ShellTriangle& t, const Now& now, const Matrix2d& stres
         }
         for (int i = 0; i < 3; ++i) add(t.corner[i], t.corner[j], block[static_cast<std::size_t>(i)]);
     }
-    const Mat3 bending = t.area_mm2 * bending_matrix(t);
-    const Mat3 across = now.normal * now.normal.transpose();
+    const Bending bending(t, now, second_of(t, x), x);
+    // A particle bends it along the normal, a height by what it takes away.
+    std::vector<std::array<Matrix2d, 3>> change(t.patch.size());  // of what the section is bent by, an axis
+    for (std::size_t j = 0; j < t.patch.size(); ++j)
+        for (int axis = 0; axis < 3; ++axis) {
+            const double along = j < t.bent ? now.normal[axis] : (axis == 0 ? -1.0 : 0.0);
+            Matrix2d dc = Matrix2d::Zero();
+            if (j < 3 && t.stretched_section) {
+                dc = now.gradient.row(axis).transpose() * g.col(static_cast<Eigen::Index>(j)).transpose();
+                dc += dc.transpose().eval();
+            }
+            change[j][static_cast<std::size_t>(axis)] = bending.change(along * tensor(t.second[j]), dc);
+        }
     for (std::size_t i = 0; i < t.patch.size(); ++i)
-        for (std::size_t j = 0; j < t.patch.size(); ++j)
-            add(t.patch[i], t.patch[j], t.second[i].dot(bending * t.second[j]) * across);
+        for (std::size_t j = 0; j < t.patch.size(); ++j) {
+            if (t.patch[i] < t.patch[j]) continue;
+            Mat3 block;
+            for (int r = 0; r < 3; ++r)
+                for (int c = 0; c < 3; ++c) {
+                    const Matrix2d &by_i = change[i][static_cast<std::size_t>(r)],
+                                   &by_j = change[j][static_cast<std::size_t>(c)];
+                    block(r, c) = t.area_mm2 * bending.stiff *
+                                  (bending.a * by_i.trace() * by_j.trace() + by_i.cwiseProduct(by_j.transpose()).sum());
+                }
+            add(t.patch[i], t.patch[j], block);
+        }
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (t.height[i] >= 0 && t.height[j] >= 0) {
+                Mat3 block = Mat3::Zero();
+                block(0, 0) = t.area_mm2 * shear_stiffness(t) * g.col(i).dot(g.col(j));
+                add(t.height[i], t.height[j], block);
+            }
 }
 
 template <class Add>
@@ -340,18 +587,8 @@ void each_block(const ShellModel& model, std::span<const Vec3> x, const Fibres& 
                 ds += 2.0 * fibre.tension[k].slope * fibre.direction[k].cwiseProduct(dc).sum() * fibre.direction[k];
             return ds;
         };
-        add_stiffness(t, now, stress, slope, add);
+        add_stiffness(t, now, x, stress, slope, add);
     }
-}
-
-Vec3 components(const Matrix2d& c) {
-    return {c(0, 0), c(1, 1), c(0, 1)};
-}
-
-Matrix2d tensor(const Vec3& s) {
-    Matrix2d out;
-    out << s[0], s[2], s[2], s[1];
-    return out;
 }
 
 }  // namespace
@@ -367,26 +604,23 @@ double shell_energy(const ShellModel& model, std::span<const Vec3> x, const Fibr
         const double thinned = t.thinning > 0.0 ? (now.thinner - 1.0) / t.thinning : -det::log(now.determinant);
         double membrane = 0.5 * t.mu_kpa * (now.c.trace() - 2.0 + thinned);
         if (fibres.any()) membrane += Stretched(t, fibres, now.c).energy_kpa;
-        const Vec3 kappa = second_of(t, x).transpose() * now.normal - t.rest_curvature;
-        energy += t.area_mm2 * (t.thickness_mm * membrane + 0.5 * kappa.dot(bending_matrix(t) * kappa));
+        const Bending bending(t, now, second_of(t, x), x);
+        energy += t.area_mm2 * (t.thickness_mm * membrane + bending.energy + bending.pull);
+        if (t.bent < t.patch.size())
+            energy += 0.5 * t.area_mm2 * shear_stiffness(t) * shear_of(t, corner_gradients(t), x).squaredNorm();
     }
     return energy;
 }
 
 void add_shell_forces(const ShellModel& model, std::span<const Vec3> x, std::span<Vec3> force, const Fibres& fibres) {
-    CATHLAB_CHECK(x.size() >= model.particles && force.size() >= model.particles, "one place and one force a particle");
+    CATHLAB_CHECK(x.size() >= model.unknowns() && force.size() >= model.unknowns(),
+                  "one place and one force a particle");
     for (const ShellTriangle& t : model.triangles) {
         const Now now(t, x);
         Matrix2d stress = t.mu_kpa * (Matrix2d::Identity() - now.thinner * now.c_inverse);
         if (fibres.any()) stress += Stretched(t, fibres, now.c).stress();
-        const Matrix23 g = corner_gradients(t);
-        const Mat3 on_corner = -t.area_mm2 * t.thickness_mm * now.gradient * stress * g;
-        const Mat3 b = second_of(t, x);
-        const Vec3 moment = t.area_mm2 * (bending_matrix(t) * (b.transpose() * now.normal - t.rest_curvature));
-        // The normal turns with the triangle: dn = - sum over g of (n . da_g) a^g.
-        const Vector2d turned = (now.gradient * now.c_inverse).transpose() * (b * moment);
-        for (int c = 0; c < 3; ++c) force[at(t.corner[c])] += on_corner.col(c) + g.col(c).dot(turned) * now.normal;
-        for (std::size_t j = 0; j < t.patch.size(); ++j) force[at(t.patch[j])] -= t.second[j].dot(moment) * now.normal;
+        add_membrane_force(t, now, stress, force);
+        add_bending_force(t, now, x, force);
     }
 }
 
@@ -408,7 +642,7 @@ Eigen::SparseMatrix<double> shell_stiffness(const ShellModel& model, std::span<c
                 if (i > j || r >= c)
                     entries.emplace_back(static_cast<int>(3 * i + r), static_cast<int>(3 * j + c), block(r, c));
     });
-    const auto n = static_cast<Eigen::Index>(3 * model.particles);
+    const auto n = static_cast<Eigen::Index>(3 * model.unknowns());
     Eigen::SparseMatrix<double> k(n, n);
     k.setFromTriplets(entries.begin(), entries.end());
     return k;
@@ -439,7 +673,7 @@ void shell_stiffness_blocks(const ShellModel& model, std::span<const Vec3> x, co
         const Mat3 definite = axes.eigenvectors() * axes.eigenvalues().cwiseMax(trace * t.mu_kpa).asDiagonal() *
                               axes.eigenvectors().transpose();
         add_stiffness(
-            t, now, tensor(stress),
+            t, now, x, tensor(stress),
             [&](const Matrix2d& dc) { return tensor(definite * Vec3(0.5 * dc(0, 0), 0.5 * dc(1, 1), dc(0, 1))); },
             [&](Index i, Index j, const Mat3& block) {
                 if (i >= j) add(i, j, block);

@@ -8,10 +8,17 @@
 // d^-a is the square of the thickness' stretch: Ogden's compressible neo-Hookean solid, whose stress across the wall is
 // 0. Small strains: Hooke's law in plane stress.  nu -> 1/2: the wall keeps its volume.  Fibres (fibres.h) add theirs.
 //
-// Bending: Koiter's, isotropic.  b = n . (second derivatives of position), by a quadratic through the triangle and its
-// neighbours (rotation-free triangles, [flores2005]), n the triangle's normal; with kappa = b - b at rest
+// Bending: Koiter's, isotropic.  b = n . (second derivatives of position), n the triangle's normal; with kappa = b - b
+// at rest
 //     energy = 1/2 D area [ (1 - nu) kappa : kappa + nu (tr kappa)^2 ],      D = E t^3 / (12 (1 - nu^2)).
-// Forces are exact gradients of an energy that rigid motions leave alone: they add up to no force and no moment.
+// Second derivatives are those of Gauss: of the slopes across a triangle's edges, as in triangles without rotations
+// [onate1993].  An edge has one slope for both of its triangles, so that a moment which is the same everywhere pulls at
+// no particle within the wall; and the slope is that of every quadratic, by the particles of the two triangles and of
+// the four beside them.  With either alone a wall is too soft by as much as its triangles are irregular, however small
+// they are.
+// Sections that are stretched (ShellOptions): kappa = y b - b at rest, y^2 = d^-a, and the membrane's own stiffness at
+// C in place of that at rest, what a neo-Hookean solid does of first order across the wall [kiendl2015]. Forces are
+// exact gradients of an energy that rigid motions leave alone: they add up to no force and no moment.
 #pragma once
 
 #include <Eigen/Sparse>
@@ -44,20 +51,40 @@ struct ShellTriangle {
     double bending_mn_mm = 0.0;   ///< D
     double poisson = 0.0;
     Vec3 rest_curvature = Vec3::Zero();  ///< b at rest: 11, 22, 12, 1/mm, in that frame
-    std::vector<Index> patch;            ///< particles that bending sees, the corners first
-    std::vector<Vec3> second;  ///< one a particle of the patch: its weight in d2/d11, d2/d22, d2/d12 of position
+    std::vector<Index> patch;            ///< particles that bending sees, the corners first; then heights (give_shear)
+    std::size_t bent = 0;                ///< how many of the patch are particles
+    bool stretched_section = false;      ///< ShellOptions
+    Triangle height{-1, -1, -1};         ///< of the corners; -1 = none
+    Mat3 held_second = Mat3::Zero();     ///< what edges that are held flat add to these derivatives: columns 11, 22, 12
+    std::vector<Vec3> second;  ///< one a member of the patch: its weight in d2/d11, d2/d22, d2/d12 of position
 };
 
 struct ShellModel {
-    std::size_t particles = 0;
+    std::size_t particles = 0, heights = 0;
     std::vector<ShellTriangle> triangles;
+
+    std::size_t unknowns() const { return particles + heights; }
+};
+
+struct ShellOptions {
+    std::span<const Vec3> along = {};         ///< the vessel's direction, one a particle (any length; 0 = none), or
+                                              ///< empty for none: fibres go round it
+    std::span<const std::uint8_t> held = {};  ///< one a particle or empty: an open edge between two that are marked
+                                              ///< keeps its slope, as if it were clamped
+    bool stretched_sections = false;          ///< they bend as thin, as wide and as stiff as they are by then
 };
 
 /// rest: (n) mm.  triangles: outward, no edge shared by more than two (CATHLAB_CHECK).  material: one a triangle, or
 /// one for all.  Throws UserError for numbers out of range and for a triangle without area.
-/// along: the vessel's direction, one a particle (any length; 0 = none), or empty for none: fibres go round it.
 ShellModel build_shell(std::span<const Vec3> rest, std::span<const Triangle> triangles,
-                       std::span<const ShellMaterial> material, std::span<const Vec3> along = {});
+                       std::span<const ShellMaterial> material, const ShellOptions& options = {});
+
+/// Lets the wall shear across its thickness at the particles that are marked, where a load is concentrated on about its
+/// thickness.  Each of them has a height w, what of its place along the normal is shear: kappa = b - b at rest - the
+/// second derivatives of w, and energy += 1/2 (5/6) mu t area |grad w|^2 (Mindlin's plate [mindlin1951], split into the
+/// part that bends and the part that shears).  Heights stand after the particles in x and in forces, each as the first
+/// component of one entry; at rest they are 0.
+void give_shear(ShellModel& model, std::span<const std::uint8_t> where);
 
 /// A law in place of the membrane's own: second Piola-Kirchhoff stress of triangle k, kPa, at C (both 11, 22, 12, in
 /// the triangle's frame).  It says all of it, fibres too.

@@ -93,6 +93,9 @@ private:
                 for (const Index i : t.patch)
                     for (const Index j : t.patch)
                         if (i >= j) f(i, j);
+                for (const Index i : t.height)
+                    for (const Index j : t.height)
+                        if (j >= 0 && i >= j) f(i, j);
             }
         };
         // Particles keep their order among the unknowns: what is lower there is lower here.
@@ -136,7 +139,7 @@ ShellLoad dead_load(std::vector<Vec3> force) {
 
 bool shell_equilibrium(const ShellModel& model, std::span<const std::uint8_t> fixed, const ShellLoad& load,
                        std::vector<Vec3>& x, const ShellRest& rest) {
-    const std::size_t n = model.particles;
+    const std::size_t n = model.unknowns();
     CATHLAB_CHECK(fixed.size() == n && x.size() == n, "one place and one mark a particle");
     std::vector<Eigen::Index> place(n, -1);  // of a free particle among the unknowns
     Eigen::Index free = 0;

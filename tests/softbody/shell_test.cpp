@@ -59,12 +59,7 @@ WallSample tube(double radius, double length, double spacing) {
     return tube_sample(shape, spacing, 1.0, 5);
 }
 
-TEST(Shell, ForcesAreTheGradientOfTheEnergy) {
-    const WallSample sample = tube(6.0, 12.0, 2.1);
-    const ShellMaterial material{.young_kpa = 800.0, .poisson = 0.4, .thickness_mm = 1.5};
-    const ShellModel shell = build_shell(sample.position, sample.triangles, {&material, 1});
-    std::vector<Vec3> x = sample.position;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += rig::random_vector(i, 0.4);
+void expect_gradient(const ShellModel& shell, const std::vector<Vec3>& x) {
     std::vector<Vec3> force(x.size(), Vec3::Zero());
     add_shell_forces(shell, x, force);
     for (std::size_t i = 0; i < x.size(); i += 7)
@@ -76,6 +71,30 @@ TEST(Shell, ForcesAreTheGradientOfTheEnergy) {
             const double slope = (shell_energy(shell, up) - shell_energy(shell, down)) / (2.0 * d);
             ASSERT_NEAR(force[i][axis], -slope, 1e-5 * std::max(1.0, force[i].norm())) << i << " " << axis;
         }
+}
+
+TEST(Shell, ForcesAreTheGradientOfTheEnergy) {
+    const WallSample sample = tube(6.0, 12.0, 2.1);
+    const ShellMaterial material{.young_kpa = 800.0, .poisson = 0.4, .thickness_mm = 1.5};
+    const ShellModel shell = build_shell(sample.position, sample.triangles, {&material, 1});
+    std::vector<Vec3> x = sample.position;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += rig::random_vector(i, 0.4);
+    expect_gradient(shell, x);
+}
+
+TEST(Shell, ForcesAreTheGradientOfTheEnergyOfASectionThatIsStretchedShearedAndHeldFlat) {
+    const WallSample sample = tube(6.0, 12.0, 2.1);
+    const ShellMaterial material{.young_kpa = 800.0, .poisson = 0.4, .thickness_mm = 1.5};
+    const std::vector<std::uint8_t> all(sample.position.size(), 1);
+    ShellModel shell =
+        build_shell(sample.position, sample.triangles, {&material, 1}, {.held = all, .stretched_sections = true});
+    give_shear(shell, all);
+    ASSERT_EQ(shell.heights, sample.position.size());
+    std::vector<Vec3> x = sample.position;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += rig::random_vector(i, 0.4);
+    x.resize(shell.unknowns(), Vec3::Zero());
+    for (std::size_t i = shell.particles; i < x.size(); ++i) x[i].x() = 0.2 * rig::random_vector(i, 1.0).x();
+    expect_gradient(shell, x);
 }
 
 TEST(Shell, RigidMotionsStoreNothingAndForcesAddUpToNothing) {
@@ -281,6 +300,133 @@ TEST(Shell, ATubeRolledOutFlatStoresItsBending) {
     }
     bent = shell_energy(thick, x);
     EXPECT_NEAR(bent / (0.5 * d / (radius * radius) * area), 1.0, 0.03);
+}
+
+/// A tube of regular triangles about z from 0, its two end rows held flat; staggered: rows half a particle round, and
+/// triangles with equal sides, nearly, else right-angled ones that lie every other way.
+struct Lattice {
+    std::vector<Vec3> rest;
+    std::vector<Triangle> triangles;
+    std::vector<std::uint8_t> fixed;
+    double round = 0.0, along = 0.0;
+    int columns = 0;
+
+    Lattice(double radius, double length, int around, int rows, bool staggered)
+        : round(2.0 * units::pi / around), along(length / rows), columns(around) {
+        for (int r = 0; r <= rows; ++r)
+            for (int c = 0; c < around; ++c) {
+                const double angle = round * (c + (staggered && r % 2 == 1 ? 0.5 : 0.0));
+                rest.emplace_back(radius * std::cos(angle), radius * std::sin(angle), along * r);
+                fixed.push_back(r == 0 || r == rows ? 1 : 0);
+            }
+        for (int r = 0; r < rows; ++r)
+            for (int c = 0; c < around; ++c) {
+                const Index a = at(c, r), b = at(c + 1, r), d = at(c, r + 1), e = at(c + 1, r + 1);
+                const bool up = staggered ? r % 2 == 1 : (r + c) % 2 == 1;
+                if (up) {
+                    triangles.emplace_back(a, b, e);
+                    triangles.emplace_back(a, e, d);
+                } else {
+                    triangles.emplace_back(a, b, d);
+                    triangles.emplace_back(b, e, d);
+                }
+            }
+    }
+    Index at(int column, int row) const { return row * columns + (column + columns) % columns; }
+};
+
+// The numbers are those of tests/softbody/tube_under_a_patch.py: 20-node bricks by CalculiX 2.20, 48 x 120 x 1 of them;
+// 96 x 120 x 2 change the first by 0.5 % and the others by 0.1 %.
+TEST(Shell, ATubePressedOnAPatchGivesWayAsASolidOneDoesHoweverItsTrianglesLie) {
+    constexpr double radius = 12.75, length = 200.0, force_mn = 1.0;
+    const ShellMaterial material{.young_kpa = 1200.0, .poisson = 0.49, .thickness_mm = 1.5};
+    const std::vector<std::pair<double, double>> solid{
+        {100.0, 0.01048}, {110.0, 0.00808}, {120.0, 0.00646}, {140.0, 0.00397}, {160.0, 0.00209}};
+    for (const bool staggered : {false, true}) {
+        const Lattice wall(radius, length, 48, 120, staggered);
+        const ShellModel shell =
+            build_shell(wall.rest, wall.triangles, {&material, 1}, {.held = wall.fixed, .stretched_sections = true});
+        // Evenly on 30 degrees of 6.7 mm, outward.
+        std::vector<Vec3> load(wall.rest.size(), Vec3::Zero());
+        constexpr int parts = 40;
+        for (const Triangle& t : wall.triangles)
+            for (int i = 0; i < parts; ++i)
+                for (int j = 0; j < parts - i; ++j) {
+                    const double u = (i + 1.0 / 3.0) / parts, v = (j + 1.0 / 3.0) / parts;
+                    const Vec3 weight(1.0 - u - v, u, v);
+                    Vec3 p = Vec3::Zero();
+                    for (int k = 0; k < 3; ++k) p += weight[k] * wall.rest[static_cast<std::size_t>(t[k])];
+                    const double angle = std::atan2(p.y(), p.x());
+                    if (std::fabs(angle) > 15.0 * units::deg || std::fabs(p.z() - 100.0) > 10.0 / 3.0) continue;
+                    for (int k = 0; k < 3; ++k)
+                        load[static_cast<std::size_t>(t[k])] += weight[k] * Vec3(std::cos(angle), std::sin(angle), 0.0);
+                }
+        double sum = 0.0;
+        for (const Vec3& f : load) sum += f.x();
+        for (Vec3& f : load) f *= force_mn / sum;
+        std::vector<Vec3> x = wall.rest;
+        ASSERT_TRUE(shell_equilibrium(shell, wall.fixed, dead_load(load), x));
+        for (const auto& [z, moved_mm] : solid) {
+            const auto i = static_cast<std::size_t>(wall.at(0, static_cast<int>(std::lround(z / wall.along))));
+            EXPECT_NEAR((x[i].x() - wall.rest[i].x()) / moved_mm, 1.0, 0.02) << "at " << z << " mm, " << staggered;
+        }
+    }
+}
+
+TEST(Shell, AStripThatIsHeldFlatAtBothEndsBendsAndShearsAsMindlinSays) {
+    const Sheet s = sheet(24.0, 6.0, 1.0, 0.0);
+    std::vector<std::uint8_t> ends(s.rest.size(), 0);
+    for (std::size_t i = 0; i < s.rest.size(); ++i)
+        ends[i] = s.rest[i].x() < 1e-9 || s.rest[i].x() > s.length - 1e-9 ? 1 : 0;
+    const ShellMaterial material{.young_kpa = 1000.0, .poisson = 0.0, .thickness_mm = 4.0};
+    constexpr double force_mn = 10.0;
+    // A line of force across its middle: F L^3 / (192 E I) + F L / (4 (5/6) G A).
+    const double second_moment = s.width * 64.0 / 12.0, area = 4.0 * s.width, length = s.length;
+    const double bent = force_mn * length * length * length / (192.0 * material.young_kpa * second_moment);
+    const double sheared = force_mn * length / (4.0 * 5.0 / 6.0 * 0.5 * material.young_kpa * area);
+    ASSERT_GT(sheared, 0.25 * bent);
+    for (const bool shears : {false, true}) {
+        ShellModel shell = build_shell(s.rest, s.triangles, {&material, 1}, {.held = ends});
+        std::vector<std::uint8_t> fixed = ends, free(ends.size());
+        for (std::size_t i = 0; i < ends.size(); ++i) free[i] = ends[i] == 0 ? 1 : 0;
+        if (shears) give_shear(shell, free);
+        fixed.resize(shell.unknowns(), 0);
+        std::vector<Vec3> x = s.rest, load(shell.unknowns(), Vec3::Zero());
+        x.resize(shell.unknowns(), Vec3::Zero());
+        // Along the rows that have a particle in the middle.
+        std::vector<std::size_t> middle;
+        for (std::size_t i = 0; i < s.rest.size(); ++i)
+            if (std::fabs(s.rest[i].x() - 0.5 * s.length) < 1e-9) middle.push_back(i);
+        for (const std::size_t i : middle) load[i].z() = force_mn / static_cast<double>(middle.size());
+        ASSERT_TRUE(shell_equilibrium(shell, fixed, dead_load(load), x, {.force_tolerance_mn = 1e-7}));
+        double moved = 0.0;
+        for (const std::size_t i : middle) moved += x[i].z() / static_cast<double>(middle.size());
+        EXPECT_NEAR(moved / (bent + (shears ? sheared : 0.0)), 1.0, 0.03) << shears;
+    }
+}
+
+TEST(Shell, ASectionThatIsStretchedBendsAsItsLayersDo) {
+    // A sheet that keeps its volume, stretched by s both ways and rolled up to 1/r.  A layer z off the middle (at rest)
+    // is stretched by s (1 + z / (s^2 r)) round; a neo-Hookean one stores by it mu/2 (1 + 3 / s^6) (z / (s r))^2.
+    const Sheet s = sheet(8.0, 6.0, 1.0, 0.2);
+    constexpr double stretch = 1.2, radius = 50.0, thin_mm = 0.8;
+    std::vector<Vec3> flat, rolled;
+    for (const Vec3& p : s.rest) {
+        flat.emplace_back(stretch * p);
+        const double angle = stretch * p.x() / radius;
+        rolled.emplace_back(radius * std::sin(angle), stretch * p.y(), radius * (1.0 - std::cos(angle)));
+    }
+    // What the chords are shorter than the arcs goes by the thickness, what is bent by its cube.
+    const auto stored = [&](double thickness) {
+        const ShellMaterial material{.young_kpa = 700.0, .poisson = 0.4999, .thickness_mm = thickness};
+        const ShellModel shell = build_shell(s.rest, s.triangles, {&material, 1}, {.stretched_sections = true});
+        return shell_energy(shell, rolled) - shell_energy(shell, flat);
+    };
+    const double bent = (stored(2.0 * thin_mm) - 2.0 * stored(thin_mm)) / 6.0;
+    const double mu = 700.0 / 3.0, six = std::pow(stretch, 6.0);
+    const double layers = 0.5 * mu * (1.0 + 3.0 / six) / (stretch * stretch * radius * radius) * thin_mm * thin_mm *
+                          thin_mm / 12.0 * s.length * s.width;
+    EXPECT_NEAR(bent / layers, 1.0, 0.01);
 }
 
 }  // namespace
