@@ -3,12 +3,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 
 #include "core/check.h"
 #include "core/deterministic_math.h"
 #include "core/errors.h"
+#include "softbody/edge_slopes.h"
 
 namespace cathlab {
 
@@ -19,8 +19,6 @@ using Eigen::Vector2d;
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
 using Matrix23 = Eigen::Matrix<double, 2, 3>;
 
-// What a slope's particles say of less than this part of what they say best is not asked of them.
-constexpr double least_singular = 0.05;
 constexpr double least_det = 1e-12;
 
 std::size_t at(Index i) {
@@ -34,241 +32,6 @@ void check_material(const ShellMaterial& m) {
     if (!(m.young_kpa > 0.0) || !std::isfinite(m.young_kpa)) refuse("Young's modulus, kPa,", m.young_kpa, "above 0");
     if (!(m.poisson >= 0.0 && m.poisson <= 0.4999)) refuse("Poisson's ratio", m.poisson, "0 to 0.4999");
     if (!(m.thickness_mm > 0.0) || !std::isfinite(m.thickness_mm)) refuse("thickness, mm,", m.thickness_mm, "above 0");
-}
-
-/// Which triangle lies across each edge.
-class Neighbours {
-public:
-    explicit Neighbours(std::span<const Triangle> triangles)
-        : triangles_(triangles), across_(triangles.size(), Triangle(-1, -1, -1)) {
-        std::map<std::pair<Index, Index>, std::pair<std::size_t, int>> open;
-        for (std::size_t t = 0; t < triangles.size(); ++t)
-            for (int k = 0; k < 3; ++k) {
-                const Index a = triangles[t][k], b = triangles[t][(k + 1) % 3];
-                const auto other = open.find({b, a});
-                if (other == open.end()) {
-                    CATHLAB_CHECK(open.emplace(std::pair{a, b}, std::pair{t, k}).second,
-                                  "an edge of the wall's triangles is shared by more than two of them");
-                    continue;
-                }
-                across_[t][k] = static_cast<Index>(other->second.first);
-                across_[other->second.first][other->second.second] = static_cast<Index>(t);
-                open.erase(other);
-            }
-    }
-    Index across(std::size_t triangle, int edge) const { return across_[triangle][edge]; }
-
-private:
-    std::span<const Triangle> triangles_;
-    std::vector<Triangle> across_;
-};
-
-/// A triangle and what is around it, unfolded into its plane: distances along the wall stay what they are.
-class Patch {
-public:
-    Patch(std::span<const Vec3> rest, std::span<const Triangle> triangles, const Neighbours& neighbours,
-          std::size_t centre)
-        : rest_(rest), triangles_(triangles), neighbours_(neighbours) {
-        const Triangle& t = triangles[centre];
-        const Vec3 e1 = rest[at(t[1])] - rest[at(t[0])], e2 = rest[at(t[2])] - rest[at(t[0])];
-        const double length = e1.norm(), along = e1.dot(e2) / length;
-        place(t[0], Vector2d(0, 0));
-        place(t[1], Vector2d(length, 0));
-        place(t[2], Vector2d(along, e1.cross(e2).norm() / length));
-        edge_.push_back({centre, -1});
-    }
-    /// Adds the triangles across the edges of those that came last.
-    void grow() {
-        std::vector<Reached> reached;
-        for (const Reached& r : edge_) {
-            for (int k = 0; k < 3; ++k) {
-                if (k == r.entered) continue;
-                const Index next = neighbours_.across(r.triangle, k);
-                if (next < 0) continue;
-                const Triangle& here = triangles_[r.triangle];
-                const Triangle& there = triangles_[at(next)];
-                int entered = 0;
-                while (there[entered] != here[(k + 1) % 3] || there[(entered + 1) % 3] != here[k]) ++entered;
-                unfold(here[k], here[(k + 1) % 3], there[(entered + 2) % 3]);
-                reached.push_back({at(next), entered});
-            }
-        }
-        edge_ = std::move(reached);
-    }
-    const std::vector<Index>& particles() const { return particle_; }
-    const Vector2d& place_of(Index particle) const { return place_[find(particle)]; }
-
-private:
-    struct Reached {
-        std::size_t triangle;
-        int entered;  // its edge towards the patch's middle
-    };
-    std::size_t find(Index particle) const {
-        return static_cast<std::size_t>(std::find(particle_.begin(), particle_.end(), particle) - particle_.begin());
-    }
-    void place(Index particle, const Vector2d& where) {
-        particle_.push_back(particle);
-        place_.push_back(where);
-    }
-    // a to b is the edge as the inner triangle has it; `far` lies on its right.
-    void unfold(Index a, Index b, Index far) {
-        if (find(far) < particle_.size()) return;
-        const Vector2d pa = place_[find(a)], pb = place_[find(b)];
-        const Vector2d d = (pb - pa).normalized();
-        const Vec3 axis = (rest_[at(b)] - rest_[at(a)]).normalized(), off = rest_[at(far)] - rest_[at(a)];
-        const double along = off.dot(axis), aside = (off - along * axis).norm();
-        place(far, pa + along * d + aside * Vector2d(d.y(), -d.x()));
-    }
-
-    std::span<const Vec3> rest_;
-    std::span<const Triangle> triangles_;
-    const Neighbours& neighbours_;
-    std::vector<Index> particle_;
-    std::vector<Vector2d> place_;
-    std::vector<Reached> edge_;
-};
-
-/// How position changes across an edge, at its middle, by weights on particles; outward as `triangle` has it.
-struct EdgeSlope {
-    std::size_t triangle = 0;
-    std::vector<std::pair<Index, double>> weight;  // 1/mm
-    Vec3 held = Vec3::Zero();                      // ... or a direction that stays
-};
-
-/// Slopes across all edges: three a triangle, the two triangles of an edge have one in common.
-class EdgeSlopes {
-public:
-    EdgeSlopes(std::span<const Vec3> rest, std::span<const Triangle> triangles, std::span<const std::uint8_t> held)
-        : rest_(rest), triangles_(triangles), held_(held), neighbours_(triangles), number_(triangles.size()) {
-        for (std::size_t t = 0; t < triangles.size(); ++t)
-            for (int k = 0; k < 3; ++k) {
-                const Index other = neighbours_.across(t, k);
-                if (other >= 0 && at(other) < t) continue;
-                const auto number = static_cast<Index>(slope_.size());
-                number_[t][k] = number;
-                if (other >= 0) number_[at(other)][entered(at(other), t)] = number;
-                slope_.push_back(slope(t, k));
-            }
-    }
-    const EdgeSlope& of(std::size_t triangle, int edge) const { return slope_[at(number_[triangle][edge])]; }
-
-private:
-    int entered(std::size_t triangle, std::size_t from) const {
-        int k = 0;
-        while (neighbours_.across(triangle, k) != static_cast<Index>(from)) ++k;
-        return k;
-    }
-    /// What lies across the other two edges of a triangle.
-    void add_beside(std::size_t triangle, int edge, std::vector<Index>& particles) const {
-        for (int k = 0; k < 3; ++k) {
-            const Index next = neighbours_.across(triangle, k);
-            if (k == edge || next < 0) continue;
-            particles.push_back(triangles_[at(next)][(entered(at(next), triangle) + 2) % 3]);
-        }
-    }
-
-    EdgeSlope slope(std::size_t triangle, int k) const {
-        EdgeSlope out;
-        out.triangle = triangle;
-        const Triangle& t = triangles_[triangle];
-        const Index a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3], other = neighbours_.across(triangle, k);
-        if (other < 0 && !held_.empty() && held_[at(a)] != 0 && held_[at(b)] != 0) {
-            const Vec3 along = (rest_[at(b)] - rest_[at(a)]).normalized(), off = rest_[at(c)] - rest_[at(a)];
-            out.held = -(off - off.dot(along) * along).normalized();
-            return out;
-        }
-        Patch patch(rest_, triangles_, neighbours_, triangle);
-        patch.grow();
-        patch.grow();
-        std::vector<Index> particles{a, b, c};
-        if (other >= 0) {
-            const int back = entered(at(other), triangle);
-            particles.push_back(triangles_[at(other)][(back + 2) % 3]);
-            add_beside(triangle, k, particles);
-            add_beside(at(other), back, particles);
-            std::sort(particles.begin() + 4, particles.end());
-            particles.erase(std::unique(particles.begin() + 4, particles.end()), particles.end());
-            for (std::size_t j = particles.size(); j-- > 4;)
-                if (std::find(particles.begin(), particles.begin() + 4, particles[j]) != particles.begin() + 4)
-                    particles.erase(particles.begin() + static_cast<std::ptrdiff_t>(j));
-        } else {
-            for (const Index p : patch.particles())
-                if (p != a && p != b && p != c) particles.push_back(p);
-        }
-        // From the edge's middle outward and along it, in lengths of it.
-        const Vector2d from = patch.place_of(a), to = patch.place_of(b), middle = 0.5 * (from + to);
-        const double length = (to - from).norm();
-        const Vector2d along = (to - from) / length, out_of(along.y(), -along.x());
-        const auto n = static_cast<Eigen::Index>(particles.size());
-        Eigen::MatrixXd linear(n, 3), quadratic(n, 3);
-        for (Eigen::Index j = 0; j < n; ++j) {
-            const Vector2d off = (patch.place_of(particles[static_cast<std::size_t>(j)]) - middle) / length;
-            const double s = off.dot(out_of), u = off.dot(along);
-            linear.row(j) << 1.0, s, u;
-            quadratic.row(j) << 0.5 * s * s, s * u, 0.5 * u * u;
-        }
-        // Of what is linear on each of the two triangles, weighed so that a bend about the edge is seen truly ...
-        Eigen::VectorXd weight = Eigen::VectorXd::Zero(n);
-        const double depth = -linear(2, 1), beyond = other >= 0 ? linear(3, 1) : 0.0;
-        const auto add = [&](Eigen::Index corner, double share) {
-            weight[corner] += share;
-            weight[0] -= share * (0.5 - linear(corner, 2));
-            weight[1] -= share * (0.5 + linear(corner, 2));
-        };
-        add(2, -(other >= 0 ? beyond / (depth + beyond) : 1.0) / depth);
-        if (other >= 0) add(3, depth / (depth + beyond) / beyond);
-        // ... and so little more that every quadratic is; linear fields stay as they are.
-        const Eigen::MatrixXd kept =
-            Eigen::MatrixXd::Identity(n, n) - linear * (linear.transpose() * linear).inverse() * linear.transpose();
-        Eigen::JacobiSVD<Eigen::MatrixXd> svd((kept * quadratic).transpose(),
-                                              Eigen::ComputeThinU | Eigen::ComputeThinV);
-        svd.setThreshold(least_singular);
-        weight -= svd.solve(quadratic.transpose() * weight);
-        for (Eigen::Index j = 0; j < n; ++j)
-            out.weight.emplace_back(particles[static_cast<std::size_t>(j)], weight[j] / length);
-        return out;
-    }
-
-    std::span<const Vec3> rest_;
-    std::span<const Triangle> triangles_;
-    std::span<const std::uint8_t> held_;
-    Neighbours neighbours_;
-    std::vector<Triangle> number_;  // (triangles) of the slope across each edge
-    std::vector<EdgeSlope> slope_;
-};
-
-/// Second derivatives by the slopes across a triangle's edges (Gauss).
-void set_bending(ShellTriangle& triangle, std::span<const Vec3> rest, const EdgeSlopes& slopes, std::size_t number) {
-    const auto add = [&](Index particle, const Vec3& weight) {
-        const auto found = std::find(triangle.patch.begin(), triangle.patch.end(), particle);
-        if (found != triangle.patch.end()) {
-            triangle.second[static_cast<std::size_t>(found - triangle.patch.begin())] += weight;
-        } else {
-            triangle.patch.push_back(particle);
-            triangle.second.push_back(weight);
-        }
-    };
-    const Triangle& t = triangle.corner;
-    for (const Index corner : t) add(corner, Vec3::Zero());
-    const Vec3 first = (rest[at(t[1])] - rest[at(t[0])]).normalized();
-    const Vec3 normal = first.cross(rest[at(t[2])] - rest[at(t[0])]).normalized(), second = normal.cross(first);
-    for (int k = 0; k < 3; ++k) {
-        const Index a = t[k], b = t[(k + 1) % 3];
-        const Vec3 edge = rest[at(b)] - rest[at(a)];
-        const double length = edge.norm();
-        const Vector2d along(edge.dot(first) / length, edge.dot(second) / length), out_of(along.y(), -along.x());
-        const Vec3 across = length / triangle.area_mm2 *
-                            Vec3(out_of.x() * out_of.x(), out_of.y() * out_of.y(), out_of.x() * out_of.y());
-        const Vec3 twist = length / triangle.area_mm2 *
-                           Vec3(out_of.x() * along.x(), out_of.y() * along.y(),
-                                0.5 * (out_of.x() * along.y() + out_of.y() * along.x()));
-        add(a, -twist / length);
-        add(b, twist / length);
-        const EdgeSlope& slope = slopes.of(number, k);
-        const double side = slope.triangle == number ? 1.0 : -1.0;
-        for (const auto& [particle, weight] : slope.weight) add(particle, side * weight * across);
-        triangle.held_second += slope.held * across.transpose();
-    }
 }
 
 Vec3 components(const Matrix2d& c) {
@@ -372,8 +135,8 @@ struct Bending {
     Matrix2d bent, rest, kappa;              // b without what is shear, at rest; what the section is bent by
     bool stretched;
     double thinner = 1.0, a = 0.0, stiff = 0.0;
-    double energy = 0.0,
-           pull = 0.0;  // of kappa; and of what pulls at the section, further from its middle on a longer way
+    double energy = 0.0;  // by kappa
+    double pull = 0.0;    // of the membrane's stress on layers that are longer than the middle by the square of b
 
     Bending(const ShellTriangle& t, const Now& now, const Mat3& second, std::span<const Vec3> x)
         : stretched(t.stretched_section), a(t.thinning), stiff(t.bending_mn_mm * (1.0 - t.poisson)) {
@@ -436,11 +199,9 @@ private:
 ShellModel build_shell(std::span<const Vec3> rest, std::span<const Triangle> triangles,
                        std::span<const ShellMaterial> material, const ShellOptions& options) {
     const std::span<const Vec3> along = options.along;
-    CATHLAB_CHECK(options.held.empty() || options.held.size() == rest.size(), "one mark a particle");
     CATHLAB_CHECK(along.empty() || along.size() == rest.size(), "one direction a particle");
     CATHLAB_CHECK(material.size() == 1 || material.size() == triangles.size(), "one material, or one a triangle");
     for (const ShellMaterial& m : material) check_material(m);
-    const EdgeSlopes slopes(rest, triangles, options.held);
     ShellModel model;
     model.particles = rest.size();
     for (std::size_t k = 0; k < triangles.size(); ++k) {
@@ -465,11 +226,17 @@ ShellModel build_shell(std::span<const Vec3> rest, std::span<const Triangle> tri
         if (!along.empty()) t.round = round_of(t, rest, along);
         t.bending_mn_mm =
             m.young_kpa * m.thickness_mm * m.thickness_mm * m.thickness_mm / (12.0 * (1.0 - m.poisson * m.poisson));
-        set_bending(t, rest, slopes, k);
-        t.bent = t.patch.size();
         t.stretched_section = options.stretched_sections;
-        t.rest_curvature = second_of(t, rest).transpose() * Now(t, rest).normal;
         model.triangles.push_back(std::move(t));
+    }
+    std::vector<SecondDerivatives> second = second_derivatives(rest, triangles, options.held);
+    for (std::size_t k = 0; k < triangles.size(); ++k) {
+        ShellTriangle& t = model.triangles[k];
+        t.patch = std::move(second[k].particle);
+        t.bent = t.patch.size();
+        t.second = std::move(second[k].weight);
+        t.held_second = second[k].held;
+        t.rest_curvature = second_of(t, rest).transpose() * Now(t, rest).normal;
     }
     return model;
 }

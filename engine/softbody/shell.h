@@ -11,11 +11,7 @@
 // Bending: Koiter's, isotropic.  b = n . (second derivatives of position), n the triangle's normal; with kappa = b - b
 // at rest
 //     energy = 1/2 D area [ (1 - nu) kappa : kappa + nu (tr kappa)^2 ],      D = E t^3 / (12 (1 - nu^2)).
-// Second derivatives are those of Gauss: of the slopes across a triangle's edges, as in triangles without rotations
-// [onate1993].  An edge has one slope for both of its triangles, so that a moment which is the same everywhere pulls at
-// no particle within the wall; and the slope is that of every quadratic, by the particles of the two triangles and of
-// the four beside them.  With either alone a wall is too soft by as much as its triangles are irregular, however small
-// they are.
+// Second derivatives are those of edge_slopes.h.
 // Sections that are stretched (ShellOptions): kappa = y b - b at rest, y^2 = d^-a, and the membrane's own stiffness at
 // C in place of that at rest, what a neo-Hookean solid does of first order across the wall [kiendl2015]. Forces are
 // exact gradients of an energy that rigid motions leave alone: they add up to no force and no moment.

@@ -1,7 +1,9 @@
 #include "softbody/wall_sample.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 
@@ -62,6 +64,46 @@ void sort_in_space(const std::vector<Vec3>& position, std::vector<Index>& nodes)
     for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = order[i].second;
 }
 
+/// Triangles of particles: outward, in the order of `fine`'s.
+std::vector<Triangle> where_three_meet(const TriMesh& fine, const Cells& cells) {
+    std::vector<Triangle> out;
+    for (const Triangle& t : fine.triangles) {
+        const Triangle met(cells.label[at(t[0])], cells.label[at(t[1])], cells.label[at(t[2])]);
+        if (met.minCoeff() >= 0 && met[0] != met[1] && met[1] != met[2] && met[2] != met[0]) out.push_back(met);
+    }
+    return out;
+}
+
+std::array<Index, 3> sorted(const Triangle& t) {
+    std::array<Index, 3> out{t[0], t[1], t[2]};
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+/// Takes away the particles whose cells lie between two others alone (three meet at each end of the line those share:
+/// a triangle with two sides, and a hole beside it).  False when there is none.
+bool erase_enclosed(const std::vector<Triangle>& triangles, std::vector<Index>& nodes) {
+    std::vector<std::set<Index>> beside(nodes.size());
+    std::map<std::array<Index, 3>, int> times;
+    for (const Triangle& t : triangles) {
+        ++times[sorted(t)];
+        for (int k = 0; k < 3; ++k) beside[at(t[k])].insert({t[(k + 1) % 3], t[(k + 2) % 3]});
+    }
+    std::vector<bool> touched(nodes.size(), false);
+    bool any = false;
+    for (const auto& [corners, met] : times) {
+        if (met < 2 || touched[at(corners[0])] || touched[at(corners[1])] || touched[at(corners[2])]) continue;
+        const auto enclosed =
+            std::find_if(corners.begin(), corners.end(), [&](Index i) { return beside[at(i)].size() == 2; });
+        if (enclosed == corners.end()) continue;
+        for (const Index i : corners) touched[at(i)] = true;
+        nodes[at(*enclosed)] = -1;
+        any = true;
+    }
+    std::erase(nodes, -1);
+    return any;
+}
+
 }  // namespace
 
 std::vector<double> lumen_spacing(std::span<const double> wanted, std::span<const double> radius) {
@@ -98,7 +140,8 @@ WallSample sample_wall(const TriMesh& fine, const std::vector<Index>& fine_regio
     for (std::size_t v = 0; v < n; ++v) weight[v] = area[v] / (spacing[v] * spacing[v] * spacing[v] * spacing[v]);
     relax(scaled, fine.vertices, weight, relaxation_rounds, nodes);
     sort_in_space(fine.vertices, nodes);
-    const Cells cells = nearest_source(scaled, nodes);
+    Cells cells = nearest_source(scaled, nodes);
+    while (erase_enclosed(where_three_meet(fine, cells), nodes)) cells = nearest_source(scaled, nodes);
 
     WallSample sample;
     const std::vector<Vec3> normals = vertex_normals(fine);
@@ -123,11 +166,12 @@ WallSample sample_wall(const TriMesh& fine, const std::vector<Index>& fine_regio
     // A cell that is no disc (in a vessel hardly wider than its particles are apart) can meet two others twice: only
     // the first triangle at a side of an edge is taken, so that the triangles are a surface.
     std::set<std::pair<Index, Index>> taken;
-    for (const Triangle& t : fine.triangles) {
-        const Triangle met(cells.label[at(t[0])], cells.label[at(t[1])], cells.label[at(t[2])]);
-        if (met.minCoeff() < 0 || met[0] == met[1] || met[1] == met[2] || met[2] == met[0]) continue;
+    std::set<std::array<Index, 3>> corners;
+    for (const Triangle& met : where_three_meet(fine, cells)) {
         const std::pair<Index, Index> sides[3] = {{met[0], met[1]}, {met[1], met[2]}, {met[2], met[0]}};
+        if (corners.contains(sorted(met))) continue;
         if (std::any_of(sides, sides + 3, [&](const auto& side) { return taken.contains(side); })) continue;
+        corners.insert(sorted(met));
         taken.insert(sides, sides + 3);
         sample.triangles.push_back(met);
     }

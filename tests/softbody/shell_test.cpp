@@ -336,7 +336,7 @@ struct Lattice {
 };
 
 // The numbers are those of tests/softbody/tube_under_a_patch.py: 20-node bricks by CalculiX 2.20, 48 x 120 x 1 of them;
-// 96 x 120 x 2 change the first by 0.5 % and the others by 0.1 %.
+// 96 x 120 x 2 change them by 0.5 % at most.
 TEST(Shell, ATubePressedOnAPatchGivesWayAsASolidOneDoesHoweverItsTrianglesLie) {
     constexpr double radius = 12.75, length = 200.0, force_mn = 1.0;
     const ShellMaterial material{.young_kpa = 1200.0, .poisson = 0.49, .thickness_mm = 1.5};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -41,6 +42,33 @@ TEST(WallSample, IsBlueNoise) {
     EXPECT_GT(nearest, 0.55 * 2.1);
     const auto [low, high] = std::minmax_element(sample.area_mm2.begin(), sample.area_mm2.end());
     EXPECT_LT(*high / *low, 4.0);
+}
+
+// A cell can be enclosed by two others: what is made of them must have no hole beside it.
+TEST(WallSample, TheTrianglesAreASheetWithNoMoreRimsThanTheTube) {
+    for (const bool closed : {false, true})
+        for (std::uint64_t seed = 1; seed <= 8; ++seed)
+            for (const double edge : {0.5, 1.0}) {
+                TubeShape shape = rig::shape(12.0, 40.0, closed);
+                shape.edge_mm = edge;
+                const WallSample sample = tube_sample(shape, 1.8, 1.0, seed);
+                std::map<Index, Index> rim;  // from each particle on it to the next
+                std::set<std::pair<Index, Index>> sides;
+                for (const Triangle& t : sample.triangles)
+                    for (int k = 0; k < 3; ++k) EXPECT_TRUE(sides.emplace(t[k], t[(k + 1) % 3]).second);
+                for (const auto& [a, b] : sides) {
+                    if (sides.contains({b, a})) continue;
+                    EXPECT_TRUE(rim.emplace(a, b).second);
+                }
+                int rims = 0;
+                for (; !rim.empty(); ++rims)
+                    for (auto here = rim.begin(); here != rim.end();) {
+                        const Index next = here->second;
+                        rim.erase(here);
+                        here = rim.find(next);
+                    }
+                EXPECT_EQ(rims, closed ? 0 : 2) << "seed " << seed << ", edges of " << edge << " mm";
+            }
 }
 
 TEST(WallSample, TheSameSeedGivesTheSameParticlesAndAnotherOthers) {
